@@ -1,0 +1,241 @@
+//! The hybrid evolutionary algorithm: no crossover, many mutants, filters, the best goes on (the paper §3.1, Fig. 9).
+//!
+//! With comma selection the best mutant becomes the next parent even if it is worse than its parent
+//! (Laumanns et al. 2000 in the paper, §3.6); with plus selection the parent contends.
+
+use crate::draws::Draws;
+use crate::ending::{Ending, Reason};
+use crate::fitness::{Criterion, Score, Standing};
+use crate::mutation::{Candidates, Palette, Strategy, mutate};
+use crate::phenotype::{PhenotypeError, Setting};
+use crate::selection::WeightingParameters;
+use rayon::prelude::*;
+use springform_mechanics::measures::Measures;
+use springform_topology::cell_type::CellTypeId;
+use springform_topology::edit::Edit;
+use springform_topology::forest::Forest;
+
+/// Who may become the next parent.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Selection {
+    /// Mutants only.
+    Comma,
+    /// Mutants and their parent.
+    Plus,
+}
+
+/// Parameters of a run that stay the same from generation to generation.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Parameters {
+    /// Mutants a generation, λ.
+    pub population: u32,
+    /// Seed of all draws.
+    pub seed: u64,
+    /// Cell types that mutation draws; not empty.
+    pub types: Vec<CellTypeId>,
+    /// Numbers in the weights.
+    pub weights: WeightingParameters,
+    /// Strategies mutate with their individuals.
+    pub self_adapt: bool,
+    /// How individuals are compared.
+    pub criterion: Criterion,
+    /// Who may become the next parent.
+    pub selection: Selection,
+}
+
+/// The genotype and standing from which a generation is drawn.
+#[derive(Clone, Debug)]
+pub struct Parent {
+    /// Closed genotype.
+    pub forest: Forest,
+    /// Strategy that its mutants inherit.
+    pub strategy: Strategy,
+    /// Measures of its net.
+    pub measures: Measures,
+    /// Spring utilization factor against the reference it was chosen by.
+    pub suf: Option<f64>,
+    candidates: Candidates,
+}
+
+/// One evaluated mutant.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Individual {
+    /// What was done to the parent, closure included.
+    pub edits: Vec<Edit>,
+    /// Strategy that it was drawn with.
+    pub strategy: Strategy,
+    /// Fingerprint of its genotype.
+    pub fingerprint: u64,
+    /// Measures; `None` if it is invalid.
+    pub measures: Option<Measures>,
+    /// Residual of its equilibrium over the mean force.
+    pub residual: Option<f64>,
+    /// Spring utilization factor.
+    pub suf: Option<f64>,
+    /// Fitness.
+    pub score: Score,
+}
+
+/// A run at some generation.
+pub struct Evolution {
+    setting: Setting,
+    parameters: Parameters,
+    start: Standing,
+    parent: Parent,
+    generation: u32,
+    threads: rayon::ThreadPool,
+}
+
+/// What one generation gave.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Generation {
+    /// Its number, from 1.
+    pub number: u32,
+    /// All mutants, in order.
+    pub individuals: Vec<Individual>,
+    /// The mutant that became parent; `None` if the parent stayed.
+    pub winner: Option<usize>,
+}
+
+impl Evolution {
+    /// A run before its first generation, or one picked up after `generation` with the parent of that time.
+    ///
+    /// `start` is the standing of the design that the run began with; `None` takes it from `forest`.
+    /// `suf` is the parent's spring utilization factor when it was chosen.
+    ///
+    /// # Errors
+    /// The forest gives no net.
+    ///
+    /// # Panics
+    /// The operating system refuses a thread.
+    pub fn new(
+        setting: Setting,
+        parameters: Parameters,
+        mut forest: Forest,
+        strategy: Strategy,
+        resumed: Option<(u32, Standing, Option<f64>)>,
+        threads: usize,
+    ) -> Result<Evolution, PhenotypeError> {
+        setting.close(&mut forest)?;
+        let (generation, start, suf) = resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
+        let parent = Parent::new(&setting, forest, strategy, suf)?;
+        let start = start.unwrap_or_else(|| Standing::from(&parent.measures));
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let threads = threads.expect("the operating system gives threads");
+        Ok(Evolution { setting, parameters, start, parent, generation, threads })
+    }
+
+    /// The parent of the next generation.
+    pub fn parent(&self) -> &Parent {
+        &self.parent
+    }
+
+    /// Standing of the design that the run began with.
+    pub fn start(&self) -> Standing {
+        self.start
+    }
+
+    /// Number of generations made.
+    pub fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    /// What the run grows in.
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// The ending condition that holds now.
+    pub fn reached(&self, ending: &Ending) -> Option<Reason> {
+        ending.reached(self.generation, self.start, Standing::from(&self.parent.measures), self.parent.suf)
+    }
+
+    /// Makes one generation and takes its winner as parent.
+    ///
+    /// # Errors
+    /// None: the winner has been evaluated before.
+    pub fn advance(&mut self) -> Result<Generation, PhenotypeError> {
+        let number = self.generation + 1;
+        let individuals: Vec<Individual> = self.threads.install(|| {
+            (0..self.parameters.population).into_par_iter().map(|index| self.individual(number, index)).collect()
+        });
+        let winner = self.choose(&individuals);
+        if let Some(index) = winner {
+            let individual = &individuals[index];
+            let mut forest = self.parent.forest.clone();
+            Edit::apply_all(&individual.edits, &mut forest)?;
+            self.parent = Parent::new(&self.setting, forest, individual.strategy, individual.suf)?;
+        }
+        self.generation = number;
+        Ok(Generation { number, individuals, winner })
+    }
+
+    /// Draws and evaluates one mutant of the present parent, the same whenever it is asked for.
+    pub fn individual(&self, generation: u32, index: u32) -> Individual {
+        let mut draws = Draws::new(self.parameters.seed, u64::from(generation), u64::from(index));
+        let inherited = self.parent.strategy;
+        let strategy = if self.parameters.self_adapt { inherited.mutated(&mut draws) } else { inherited };
+        let palette = Palette {
+            types: &self.parameters.types,
+            catalogue: &self.setting.catalogue,
+            weights: &self.parameters.weights,
+        };
+        let mut edits = mutate(&self.parent.candidates, &strategy, &palette, &mut draws);
+        let forest = self.grow_mutant(&mut edits);
+        let fingerprint = forest.as_ref().map_or(0, Forest::fingerprint);
+        let criterion = &self.parameters.criterion;
+        match forest.and_then(|forest| self.setting.evaluate(&forest)) {
+            Ok(phenotype) => {
+                let measures = phenotype.measures;
+                let suf = criterion.suf(&measures, self.start, Standing::from(&self.parent.measures));
+                let score = criterion.score(&measures, suf);
+                let residual = Some(phenotype.equilibrium.residual);
+                Individual { edits, strategy, fingerprint, measures: Some(measures), residual, suf, score }
+            }
+            Err(_) => Individual {
+                edits,
+                strategy,
+                fingerprint,
+                measures: None,
+                residual: None,
+                suf: None,
+                score: Score::UNDEFINED,
+            },
+        }
+    }
+
+    /// The mutant's closed forest; what closing took is appended to the edits.
+    fn grow_mutant(&self, edits: &mut Vec<Edit>) -> Result<Forest, PhenotypeError> {
+        let mut forest = self.parent.forest.clone();
+        Edit::apply_all(edits, &mut forest)?;
+        edits.extend(self.setting.close(&mut forest)?);
+        Ok(forest)
+    }
+
+    fn choose(&self, individuals: &[Individual]) -> Option<usize> {
+        let springs = |measures: Option<&Measures>| measures.map_or(0, |measures| measures.springs);
+        let mut standings: Vec<(Score, u32)> =
+            individuals.iter().map(|one| (one.score, springs(one.measures.as_ref()))).collect();
+        let criterion = &self.parameters.criterion;
+        if self.parameters.selection == Selection::Comma {
+            return criterion.choose(&standings);
+        }
+        let parent = &self.parent.measures;
+        let suf = criterion.suf(parent, self.start, Standing::from(parent));
+        standings.insert(0, (criterion.score(parent, suf), parent.springs));
+        criterion.choose(&standings).and_then(|index| index.checked_sub(1))
+    }
+}
+
+impl Parent {
+    fn new(
+        setting: &Setting,
+        forest: Forest,
+        strategy: Strategy,
+        suf: Option<f64>,
+    ) -> Result<Parent, PhenotypeError> {
+        let phenotype = setting.evaluate(&forest)?;
+        let candidates = Candidates::new(&forest, &phenotype.inner_forces());
+        Ok(Parent { forest, strategy, measures: phenotype.measures, suf, candidates })
+    }
+}

@@ -1,0 +1,103 @@
+//! From genotype to measured phenotype: expression, network, equilibrium, measures in one call.
+
+use springform_mechanics::embedding::Embedding;
+use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status};
+use springform_mechanics::measures::{Measures, inner_forces};
+use springform_mechanics::network::{Network, SpringLaw};
+use springform_topology::base_mesh::BaseMesh;
+use springform_topology::cell_type::Catalogue;
+use springform_topology::edit::{Edit, EditError};
+use springform_topology::expression::{Expression, ExpressionError, express};
+use springform_topology::filters::{Method, recursive};
+use springform_topology::forest::Forest;
+use thiserror::Error;
+
+/// Everything of a design but its forest: what stays the same while a forest is edited or evolved.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Setting {
+    /// The base mesh.
+    pub mesh: BaseMesh,
+    /// Cell types.
+    pub catalogue: Catalogue,
+    /// Method of resolving neighbours.
+    pub method: Method,
+    /// Base vertex of every anchor, each once.
+    pub anchors: Vec<u32>,
+    /// Anchor positions and drawn positions.
+    pub embedding: Embedding,
+    /// Stiffness of springs.
+    pub law: SpringLaw,
+    /// When equilibrium is reached.
+    pub solver: Settings,
+}
+
+/// A genotype's net at equilibrium.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Phenotype {
+    /// Nodes, springs and cells.
+    pub expression: Expression,
+    /// Springs as the solver got them.
+    pub network: Network<'static>,
+    /// Positions and forces.
+    pub equilibrium: Equilibrium,
+    /// Measures at equilibrium.
+    pub measures: Measures,
+}
+
+/// Why a genotype has no measured phenotype.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum PhenotypeError {
+    /// The filters leave no net.
+    #[error(transparent)]
+    Expression(#[from] ExpressionError),
+    /// An edit does not fit.
+    #[error(transparent)]
+    Edit(#[from] EditError),
+    /// No equilibrium.
+    #[error("the net finds no equilibrium: {0:?}, residual {1:.3e}")]
+    Equilibrium(Status, f64),
+}
+
+impl Setting {
+    /// Filters that write into the forest: level balance under the recursive method.
+    ///
+    /// # Errors
+    /// None on a valid forest.
+    pub fn close(&self, forest: &mut Forest) -> Result<Vec<Edit>, EditError> {
+        match self.method {
+            Method::Recursive => recursive::close(&self.mesh, forest),
+            Method::Extensible | Method::Dynamic => Ok(Vec::new()),
+        }
+    }
+
+    /// Grows the network of a closed forest.
+    ///
+    /// # Errors
+    /// The filters leave no net.
+    pub fn grow(&self, forest: &Forest) -> Result<(Expression, Network<'static>), ExpressionError> {
+        let expression = express(&self.mesh, forest, &self.catalogue, self.method, &self.anchors)?;
+        let network = Network::from_expression(&expression, &self.embedding, self.law);
+        Ok((expression, network))
+    }
+
+    /// Grows, solves and measures a closed forest.
+    ///
+    /// # Errors
+    /// The filters leave no net, or the net no equilibrium.
+    pub fn evaluate(&self, forest: &Forest) -> Result<Phenotype, PhenotypeError> {
+        let (expression, network) = self.grow(forest)?;
+        let equilibrium = equilibrium::solve(&network, &self.solver);
+        if equilibrium.status != Status::Converged {
+            return Err(PhenotypeError::Equilibrium(equilibrium.status, equilibrium.residual));
+        }
+        let measures = Measures::new(&expression, &network, &equilibrium.positions, &equilibrium.forces);
+        Ok(Phenotype { expression, network, equilibrium, measures })
+    }
+}
+
+impl Phenotype {
+    /// Inner force of every expressed cell [N].
+    pub fn inner_forces(&self) -> Vec<f64> {
+        inner_forces(&self.expression, &self.equilibrium.forces)
+    }
+}

@@ -1,0 +1,27 @@
+//! The Python module `springform._core`: conversion between Python and the Rust crates, no algorithm.
+//!
+//! Arrays are handed to NumPy without a copy, and read from NumPy without a copy. The interpreter lock is free
+//! during native work. Every refusal raises `CoreError(key, problem)`.
+
+mod convert;
+mod evolution;
+mod mechanics;
+mod topology;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("CoreError", module.py().get_type::<convert::CoreError>())?;
+    module.add_class::<topology::BaseMesh>()?;
+    module.add_class::<topology::Forest>()?;
+    module.add_class::<mechanics::Setting>()?;
+    module.add_class::<mechanics::ImplicitEuler>()?;
+    module.add_class::<evolution::Evolution>()?;
+    module.add_class::<evolution::StressSeeking>()?;
+    module.add_function(wrap_pyfunction!(mechanics::solve, module)?)?;
+    module.add_function(wrap_pyfunction!(mechanics::residuals, module)?)?;
+    module.add_function(wrap_pyfunction!(evolution::cell_weight, module)?)?;
+    Ok(())
+}

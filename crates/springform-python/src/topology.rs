@@ -1,0 +1,166 @@
+//! Base meshes and forests for Python.
+
+use crate::convert::{refusal, rows};
+use crate::mechanics::Setting;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use springform_topology::address::Place;
+use springform_topology::edit::Edit;
+use springform_topology::forest;
+use springform_topology::framework::{Arc, Framework, Grid, Join, Part, Shape, Side};
+use springform_topology::notation::write_cell;
+use springform_topology::{base_mesh, notation};
+use std::collections::BTreeMap;
+
+type ArcTuple = (usize, String, u32, u32);
+
+#[pyclass(frozen, module = "springform._core")]
+pub struct BaseMesh {
+    pub mesh: base_mesh::BaseMesh,
+}
+
+fn side(name: &str) -> PyResult<Side> {
+    Side::parse(name).ok_or_else(|| refusal("side", format!("there is no side '{name}'")))
+}
+
+fn arc((part, name, start, length): ArcTuple) -> PyResult<Arc> {
+    Ok(Arc { part, side: side(&name)?, start, length })
+}
+
+#[pymethods]
+impl BaseMesh {
+    #[staticmethod]
+    fn from_framework(
+        dia: bool,
+        parts: Vec<(String, bool, u32, u32)>,
+        joins: Vec<(ArcTuple, ArcTuple, bool, bool)>,
+    ) -> PyResult<Self> {
+        let parts = parts
+            .into_iter()
+            .map(|(name, closed, around, along)| {
+                let shape = if closed { Shape::Cylinder } else { Shape::Sheet };
+                Part { name, shape, around, along }
+            })
+            .collect();
+        let joins = joins
+            .into_iter()
+            .map(|(first, second, reversed, cord)| {
+                Ok(Join { first: arc(first)?, second: arc(second)?, reversed, cord })
+            })
+            .collect::<PyResult<_>>()?;
+        let grid = if dia { Grid::Dia } else { Grid::Quad };
+        let mesh = base_mesh::BaseMesh::from_framework(&Framework { grid, parts, joins })
+            .map_err(|error| refusal(error.key, error.problem))?;
+        Ok(BaseMesh { mesh })
+    }
+
+    #[staticmethod]
+    fn from_faces(vertex_count: u32, faces: Vec<[u32; 4]>) -> PyResult<Self> {
+        let mesh = base_mesh::BaseMesh::from_faces(vertex_count, faces)
+            .map_err(|error| refusal(error.key, error.problem))?;
+        Ok(BaseMesh { mesh })
+    }
+
+    #[getter]
+    fn vertex_count(&self) -> u32 {
+        self.mesh.vertex_count()
+    }
+
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, self.mesh.faces().to_vec())
+    }
+
+    #[getter]
+    fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, self.mesh.edges().to_vec())
+    }
+
+    fn faces_at_edge(&self, edge: u32) -> Vec<u32> {
+        self.mesh.faces_at_edge(edge).iter().map(|side| side.face).collect()
+    }
+
+    fn border_vertex(&self, part: &str, name: &str, index: usize) -> PyResult<Option<u32>> {
+        Ok(self.mesh.border_vertex(part, side(name)?, index))
+    }
+
+    /// (part, side, path of base vertices, closed) of every border.
+    #[getter]
+    fn borders(&self) -> Vec<(String, &'static str, Vec<u32>, bool)> {
+        let borders = self.mesh.borders().iter();
+        borders.map(|b| (b.part.clone(), b.side.name(), b.path.clone(), b.closed)).collect()
+    }
+
+    /// Unrolled map: part of every face, and its corners as (f, 8) half columns and half rows.
+    #[getter]
+    fn map<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<i32>>)> {
+        let map = self.mesh.map();
+        let corners: Vec<[i32; 8]> = map
+            .iter()
+            .map(|place| std::array::from_fn(|at| {
+                let corner = place.corners[at / 2];
+                if at % 2 == 0 { corner.0 } else { corner.1 }
+            }))
+            .collect();
+        Ok((PyArray1::from_vec(py, map.iter().map(|place| place.part).collect()), rows(py, corners)?))
+    }
+}
+
+#[pyclass(frozen, module = "springform._core")]
+pub struct Forest {
+    pub forest: forest::Forest,
+}
+
+#[pymethods]
+impl Forest {
+    /// Notation of the top-level cells that differ from the default, and overrides (added, cut).
+    fn notation(
+        &self,
+        setting: &Setting,
+        default: &str,
+    ) -> (BTreeMap<u32, String>, Vec<String>, Vec<String>) {
+        let cells = (0..self.forest.top_level())
+            .map(|face| (face, write_cell(&self.forest, self.forest.top(face), &setting.setting.catalogue)))
+            .filter(|(_, text)| text != default)
+            .collect();
+        let (mut added, mut cut) = (Vec::new(), Vec::new());
+        for (pair, what) in self.forest.overrides() {
+            let [a, b] = pair.keys();
+            let list = if *what == forest::Override::Added { &mut added } else { &mut cut };
+            list.push(format!("{a} {b}"));
+        }
+        (cells, added, cut)
+    }
+
+    /// A forest changed by edits, each a line of text.
+    fn edited(&self, setting: &Setting, edits: Vec<String>) -> PyResult<Forest> {
+        let mut forest = self.forest.clone();
+        Edit::apply_all(&setting.edits(&edits)?, &mut forest).map_err(|error| refusal("edit", error))?;
+        Ok(Forest { forest })
+    }
+
+    /// Type and turn, switch, and whether children are stored, of the cell at an address.
+    fn cell(&self, setting: &Setting, address: &str) -> PyResult<(String, bool, bool)> {
+        let place = Place::parse(address).map_err(|error| refusal("cell", error))?;
+        let cell = self
+            .forest
+            .find(place)
+            .ok_or_else(|| refusal("cell", format!("cell {address} does not exist")))?;
+        let content = notation::write_content(self.forest.content(cell), &setting.setting.catalogue);
+        Ok((content, self.forest.is_on(cell), self.forest.children(cell).is_some()))
+    }
+
+    #[getter]
+    fn fingerprint(&self) -> u64 {
+        self.forest.fingerprint()
+    }
+
+    #[getter]
+    fn stored(&self) -> usize {
+        self.forest.stored()
+    }
+
+    fn __eq__(&self, other: &Forest) -> bool {
+        self.forest == other.forest
+    }
+}

@@ -1,0 +1,378 @@
+"""Designs: a framework with a forest of cells, ready to grow, edit, solve and measure."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, design_file, scenes
+from .design_file import DesignFile, ForestSection, Overrides
+from .errors import DesignError
+from .key_lines import KeyPath, line_of_key
+from .network import TOLERANCE, Equilibrium, Floats, Network, Solver, solve
+
+Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
+"""(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""
+
+
+@dataclass(frozen=True)
+class Cells:
+    """The expressed cells of a design, in order of address, and what belongs to them."""
+
+    addresses: list[str]
+    """Such as ``12.0.3``: top-level cell, then children."""
+    squares: NDArray[np.uint32]
+    """(c, 4): top-level cell, level, and column and row among its 2^level x 2^level squares."""
+    types: list[str]
+    """Type as expressed: a number, or the name of a defined type."""
+    springs: Groups
+    """Springs of every cell; a shared spring belongs to all its cells."""
+    boundaries: Groups
+    """Nodes around every cell, corner c0 first."""
+
+    def of(self, groups: Groups, address: str) -> NDArray[np.uint32]:
+        """Return the items of one cell. Raises `DesignError`: no expressed cell is there."""
+        try:
+            cell = self.addresses.index(address)
+        except ValueError:
+            raise DesignError("is no expressed cell", key=address) from None
+        starts, items = groups
+        return items[starts[cell] : starts[cell + 1]]
+
+
+@dataclass(frozen=True)
+class Aperture:
+    """A ring of a cylinder, or a side of a sheet, at equilibrium."""
+
+    ring: str
+    """Such as ``trunk.start``."""
+    perimeter: float
+    """[m]."""
+    area: float
+    """Size of the vector area [m2]; zero for a side of a sheet."""
+    normal: tuple[float, float, float]
+    """Unit normal; zero for a side of a sheet."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Measures of a net at equilibrium (the paper, section 3.6 and Fig. 15)."""
+
+    springs: int
+    """Number of springs."""
+    nodes: int
+    """Number of nodes."""
+    cells: int
+    """Number of expressed cells."""
+    force_differential: float | None
+    """Largest over smallest force; None if a spring carries next to nothing."""
+    force_min: float
+    """[N]."""
+    force_max: float
+    """[N]."""
+    force_mean: float
+    """[N]."""
+    force_deviation: float
+    """Standard deviation [N]."""
+    force_variation: float
+    """Standard deviation over mean."""
+    force_range: float
+    """Largest minus smallest [N]."""
+    total_length: float
+    """Sum of spring lengths [m]."""
+    load_path: float
+    """Sum of force times length [N m]."""
+    area: float
+    """Area of all cells but null ones [m2]."""
+    shortest_spring: float
+    """Smallest length of material between nodes [m]."""
+    length_per_area: float
+    """Total length over area [1/m]."""
+    apertures: tuple[Aperture, ...] = ()
+    """Rings and sides, part by part."""
+
+
+class Design:
+    """A framework, a forest and the rest of a design file; it does not change, edits make new ones.
+
+    Attributes: `file` (the design file it came from), `forest`, `setting` (all but the forest).
+    """
+
+    def __init__(
+        self,
+        file: DesignFile,
+        *,
+        source: str | None = None,
+        setting: _core.Setting | None = None,
+        forest: _core.Forest | None = None,
+    ) -> None:
+        """Build the base mesh and the forest; `source` is the file that errors name.
+
+        Raises `DesignError`: joins, cells or overrides that do not fit.
+        """
+        self.file = file
+        self._source = source
+        self.setting = self._build(self._new_setting) if setting is None else setting
+        self.forest = self._build(self._new_forest) if forest is None else forest
+
+    @property
+    def name(self) -> str:
+        """Name of the design."""
+        return self.file.name
+
+    @property
+    def mesh(self) -> _core.BaseMesh:
+        """The base mesh."""
+        return self._mesh
+
+    @cached_property
+    def anchor_names(self) -> tuple[str, ...]:
+        """Names of the anchors."""
+        return self.file.framework.anchor_names()
+
+    # --- growing -------------------------------------------------------------------------------
+
+    @cached_property
+    def _grown(self) -> dict[str, Any]:
+        return self._build(lambda: self.setting.grow(self.closed.forest))
+
+    @cached_property
+    def closed(self) -> Design:
+        """The design with all subdivisions that its method needs written into the forest."""
+        forest, edits = self._build(lambda: self.setting.closed(self.forest))
+        return self._with(forest) if edits else self
+
+    def network(self) -> Network:
+        """Grow the net: springs after all filters. Raises `DesignError`: nothing is left."""
+        grown = self._grown
+        names = ("stiffness", "rest_length", "loads")
+        return Network(
+            grown["positions"], grown["springs"], grown["fixed"], **{n: grown[n] for n in names}
+        )
+
+    @property
+    def nodes(self) -> list[str]:
+        """Keys of the nodes, in the order of the network's: ``v12``, ``e7:3/8``, ``f5:1/2,3/4``."""
+        nodes: list[str] = self._grown["nodes"]
+        return nodes
+
+    @property
+    def anchors(self) -> NDArray[np.uint32]:
+        """Node of every anchor, in the order of `anchor_names`."""
+        anchors: NDArray[np.uint32] = self._grown["anchors"]
+        return anchors
+
+    @cached_property
+    def cells(self) -> Cells:
+        """The expressed cells."""
+        grown = self._grown
+        return Cells(
+            grown["cells"],
+            grown["cell_squares"],
+            grown["cell_types"],
+            grown["cell_springs"],
+            grown["cell_boundaries"],
+        )
+
+    # --- queries -------------------------------------------------------------------------------
+
+    def cells_at(self, node: str) -> list[str]:
+        """Return the addresses of expressed cells with a node on their boundary."""
+        number = self._node(node)
+        starts, items = self.cells.boundaries
+        found = np.searchsorted(starts, np.flatnonzero(items == number), side="right") - 1
+        return [self.cells.addresses[cell] for cell in found]
+
+    def neighbours(self, address: str) -> list[str]:
+        """Return the addresses of expressed cells that share an edge with an expressed cell."""
+        self.cells.of(self.cells.springs, address)
+        found: list[str] = self._build(
+            lambda: self.setting.neighbours(self.closed.forest, address)
+        )
+        return found
+
+    def springs(self, address: str) -> NDArray[np.uint32]:
+        """Return the numbers of the springs of an expressed cell."""
+        return self.cells.of(self.cells.springs, address)
+
+    def _node(self, node: str) -> int:
+        try:
+            return self.nodes.index(node)
+        except ValueError:
+            raise DesignError("is no node of the net", key=node) from None
+
+    # --- equilibrium ---------------------------------------------------------------------------
+
+    def solve(self, *, tolerance: float = TOLERANCE, solver: Solver = "direct") -> Equilibrium:
+        """Grow and solve the net. Raises `DesignError`: no net is left after filtering."""
+        return solve(self.network(), tolerance=tolerance, solver=solver)
+
+    def measure(self, equilibrium: Equilibrium) -> Measures:
+        """Measure an equilibrium of this design."""
+        values = self.setting.measure(
+            self.closed.forest, equilibrium.positions, equilibrium.forces
+        )
+        apertures = tuple(
+            Aperture(f"{part}.{side}", perimeter, area, normal)
+            for part, side, perimeter, area, normal in values.pop("apertures")
+        )
+        return Measures(**values, apertures=apertures)
+
+    def inner_forces(self, equilibrium: Equilibrium) -> Floats:
+        """Return the sum of spring forces of every expressed cell [N] (the paper, section 3.5)."""
+        starts, items = self.cells.springs
+        sums = np.concatenate(([0.0], np.cumsum(equilibrium.forces[items])))
+        inner: Floats = sums[starts[1:]] - sums[starts[:-1]]
+        return inner
+
+    # --- change --------------------------------------------------------------------------------
+
+    def edited(self, edits: Iterable[str]) -> Design:
+        """Return the design changed by edits, each a line such as ``12.0 subdivide 1 1 6 1``.
+
+        Raises `DesignError`: an edit does not fit.
+        """
+        return self._with(self._build(lambda: self.forest.edited(self.setting, list(edits))))
+
+    def inverse(self, edits: Iterable[str]) -> list[str]:
+        """Return the edits that undo `edits`. Raises `DesignError`: not edits of this framework."""
+        inverse: list[str] = self._build(lambda: self.setting.inverse(list(edits)))
+        return inverse
+
+    def with_method(self, method: str) -> Design:
+        """Return the design with another filter method. Raises `DesignError`: unknown method."""
+        if method not in design_file.METHODS:
+            known = ", ".join(design_file.METHODS)
+            raise DesignError(f"there is no method '{method}'; use {known}", key="method")
+        file = self.to_file().model_copy(update={"method": method})
+        return Design(file, source=self._source)
+
+    def renamed(self, name: str) -> Design:
+        """Return the design under another name."""
+        file = self.file.model_copy(update={"name": name})
+        other = Design(file, source=self._source, setting=self.setting, forest=self.forest)
+        other._mesh = self._mesh
+        return other
+
+    def to_file(self) -> DesignFile:
+        """Return the design file of this design, its forest written in cell notation."""
+        framework, section = self.file.framework, self.file.forest
+        default = str(section.type)
+        for _ in range(framework.level):
+            default = f"{section.type}({' '.join([default] * 4)})"
+        cells, added, cut = self.forest.notation(self.setting, default)
+        forest = ForestSection(type=section.type, cells=cells)
+        overrides = Overrides(added=tuple(added), cut=tuple(cut))
+        return self.file.model_copy(update={"forest": forest, "overrides": overrides})
+
+    def _with(self, forest: _core.Forest) -> Design:
+        other = Design(self.file, source=self._source, setting=self.setting, forest=forest)
+        other._mesh = self._mesh
+        return other
+
+    # --- building ------------------------------------------------------------------------------
+
+    def _build(self, make: Callable[[], Any]) -> Any:
+        try:
+            return make()
+        except _core.CoreError as error:
+            key, problem = error.args
+            raise DesignError(
+                problem, file=self._source, key=key, line=self._line(key)
+            ) from None
+
+    def _line(self, key: str) -> int | None:
+        if self._source is None or not os.path.isfile(self._source):
+            return None
+        path: KeyPath = tuple(
+            int(index) if index else word
+            for index, word in re.findall(r"\[(\d+)\]|([^.\[\]]+)", key)
+        )
+        text = open(self._source, encoding="utf-8").read()
+        return line_of_key(text, path, "json" if self._source.endswith(".json") else "toml")
+
+    def _new_setting(self) -> _core.Setting:
+        file = self.file
+        self._mesh = _base_mesh(file)
+        vertices = self._anchor_vertices()
+        return _core.Setting(
+            self._mesh,
+            [
+                (name, list(kind.springs), kind.perimeter, kind.fan)
+                for name, kind in file.cell_types.items()
+            ],
+            file.method,
+            vertices,
+            [anchor.position for anchor in file.framework.anchors],
+            list(file.framework.mesh.vertices) if file.framework.mesh else None,
+            file.springs.stiffness,
+            file.springs.ring_factor,
+            TOLERANCE,
+        )
+
+    def _anchor_vertices(self) -> list[int]:
+        vertices: dict[int, str] = {}
+        for number, anchor in enumerate(self.file.framework.anchors):
+            key, name = f"framework.anchors[{number}]", self.anchor_names[number]
+            vertex = anchor.vertex
+            if anchor.ring is not None and anchor.index is not None:
+                part, side = anchor.ring.split(".")
+                vertex = self._mesh.border_vertex(part, side, anchor.index)
+            if vertex is None or vertex >= self._mesh.vertex_count:
+                count = self._mesh.vertex_count
+                raise _core.CoreError(key, f"there is no such vertex; there are {count}, from 0")
+            if vertex in vertices:
+                problem = f"joins put {name} on the node of {vertices[vertex]}; remove one of them"
+                raise _core.CoreError(key, problem)
+            vertices[vertex] = name
+        return list(vertices)
+
+    def _new_forest(self) -> _core.Forest:
+        file = self.file
+        return self.setting.forest(
+            str(file.forest.type),
+            file.framework.level,
+            dict(file.forest.cells),
+            list(file.overrides.added),
+            list(file.overrides.cut),
+        )
+
+
+def load(design: str | os.PathLike[str]) -> Design:
+    """Load a design: a .toml or .json file, or the name of a packaged scene.
+
+    Raises `DesignError`: neither, or a file that is no valid design.
+    """
+    return Design(scenes.find(design), source=os.fspath(design))
+
+
+def save(design: Design, path: str | os.PathLike[str]) -> None:
+    """Write a design to a .toml or .json file, atomically and canonically.
+
+    Raises `DesignError`: another kind of file. `WriteError`: the file can't be written.
+    """
+    design_file.save(design.to_file(), path)
+
+
+def _base_mesh(file: DesignFile) -> _core.BaseMesh:
+    framework = file.framework
+    if framework.mesh is not None:
+        mesh = framework.mesh
+        return _core.BaseMesh.from_faces(len(mesh.vertices), [list(face) for face in mesh.faces])
+    parts = [(c.name, True, c.around, c.along) for c in framework.cylinders]
+    parts += [(s.name, False, s.across, s.along) for s in framework.sheets]
+    numbers = {part[0]: number for number, part in enumerate(parts)}
+
+    def arc(arc: design_file.Arc) -> tuple[int, str, int, int]:
+        name, side = arc.ring.split(".")
+        return numbers[name], side, arc.start, arc.length
+
+    joins = [(arc(j.first), arc(j.second), j.reversed, j.cord) for j in framework.joins]
+    return _core.BaseMesh.from_framework(framework.grid == "dia", parts, joins)
