@@ -1,0 +1,48 @@
+"""springFORM: design tensile nets whose topology differs from place to place.
+
+import springform as sf
+
+design = sf.load("three-cylinders")
+equilibrium = design.solve()
+run = sf.evolve(design, population=150, generations=300, types=(1, 6), seed=1)
+sf.save(run.best, "evolved.toml")
+"""
+
+from ._core import __version__
+from .design import Aperture, Cells, Design, Measures, load, save
+from .errors import DesignError, InputError, RunError, SpringformError
+from .evolution import Progress, SeekStep, evolve, resume, seek
+from .files import WriteError
+from .network import Equilibrium, Network, animate, residuals, solve
+from .parameters import Parameters
+from .run import Run, open_run
+from .scenes import names as scene_names
+
+__all__ = [
+    "Aperture",
+    "Cells",
+    "Design",
+    "DesignError",
+    "Equilibrium",
+    "InputError",
+    "Measures",
+    "Network",
+    "Parameters",
+    "Progress",
+    "Run",
+    "RunError",
+    "SeekStep",
+    "SpringformError",
+    "WriteError",
+    "__version__",
+    "animate",
+    "evolve",
+    "load",
+    "open_run",
+    "residuals",
+    "resume",
+    "save",
+    "scene_names",
+    "seek",
+    "solve",
+]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,16 @@ from numpy.typing import NDArray
 from . import _core, design_file, scenes
 from .design_file import DesignFile, ForestSection, Overrides
 from .errors import DesignError
+from .files import read_text
 from .key_lines import KeyPath, line_of_key
 from .network import TOLERANCE, Equilibrium, Floats, Network, Solver, solve
 
 Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""
+
+
+METHODS: tuple[str, ...] = get_args(DesignFile.model_fields["method"].annotation)
+"""Names of the filter methods."""
 
 
 @dataclass(frozen=True)
@@ -193,9 +198,7 @@ class Design:
     def neighbours(self, address: str) -> list[str]:
         """Return the addresses of expressed cells that share an edge with an expressed cell."""
         self.cells.of(self.cells.springs, address)
-        found: list[str] = self._build(
-            lambda: self.setting.neighbours(self.closed.forest, address)
-        )
+        found: list[str] = self._build(lambda: self.setting.neighbours(self.closed.forest, address))
         return found
 
     def springs(self, address: str) -> NDArray[np.uint32]:
@@ -216,9 +219,7 @@ class Design:
 
     def measure(self, equilibrium: Equilibrium) -> Measures:
         """Measure an equilibrium of this design."""
-        values = self.setting.measure(
-            self.closed.forest, equilibrium.positions, equilibrium.forces
-        )
+        values = self.setting.measure(self.closed.forest, equilibrium.positions, equilibrium.forces)
         apertures = tuple(
             Aperture(f"{part}.{side}", perimeter, area, normal)
             for part, side, perimeter, area, normal in values.pop("apertures")
@@ -248,8 +249,8 @@ class Design:
 
     def with_method(self, method: str) -> Design:
         """Return the design with another filter method. Raises `DesignError`: unknown method."""
-        if method not in design_file.METHODS:
-            known = ", ".join(design_file.METHODS)
+        if method not in METHODS:
+            known = ", ".join(METHODS)
             raise DesignError(f"there is no method '{method}'; use {known}", key="method")
         file = self.to_file().model_copy(update={"method": method})
         return Design(file, source=self._source)
@@ -284,9 +285,7 @@ class Design:
             return make()
         except _core.CoreError as error:
             key, problem = error.args
-            raise DesignError(
-                problem, file=self._source, key=key, line=self._line(key)
-            ) from None
+            raise DesignError(problem, file=self._source, key=key, line=self._line(key)) from None
 
     def _line(self, key: str) -> int | None:
         if self._source is None or not os.path.isfile(self._source):
@@ -295,7 +294,7 @@ class Design:
             int(index) if index else word
             for index, word in re.findall(r"\[(\d+)\]|([^.\[\]]+)", key)
         )
-        text = open(self._source, encoding="utf-8").read()
+        text = read_text(self._source)
         return line_of_key(text, path, "json" if self._source.endswith(".json") else "toml")
 
     def _new_setting(self) -> _core.Setting:

@@ -7,6 +7,9 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..design_file import DesignFile, from_data
 from ..errors import DesignError
 from ..files import read_text
@@ -179,3 +182,10 @@ def _corner(word: str, vertex_count: int) -> int:
             "correct the face"
         )
     return vertex_count - int(digits)
+
+
+def line_obj(positions: NDArray[np.float64], springs: NDArray[np.uint32]) -> str:
+    """Return an OBJ text with a vertex a node [m] and a line a spring, for Rhino and others."""
+    vertices = (f"v {x!r} {y!r} {z!r}" for x, y, z in positions.tolist())
+    lines = (f"l {a + 1} {b + 1}" for a, b in springs.tolist())
+    return "\n".join(["# net of springs: v in m, l a spring", *vertices, *lines]) + "\n"

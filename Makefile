@@ -1,0 +1,132 @@
+# Every command of the project: `make` lists them; nothing else needs to be typed on a fresh machine.
+
+.DEFAULT_GOAL := help
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.ONESHELL:
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-builtin-rules --no-print-directory
+
+# Any Python from 3.11 on: `make test PYTHON=python3.12`.
+PYTHON ?= python3
+PIP_VERSION := 26.3
+
+VENV := $(CURDIR)/.venv
+REQUIREMENTS := $(VENV)/requirements.stamp
+PACKAGE := $(VENV)/package.stamp
+SCHEMA := docs/formats/design.schema.json
+DEMO := runs/demo
+
+# What a machine must have is checked before anything is built, and said in one line.
+ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
+  ifeq ($(shell command -v cargo),)
+    $(error springFORM needs Rust 1.85 or newer: install it so that `cargo` is found, then try again)
+  endif
+  # Looked up before .venv goes into PATH: an environment must not be made by its own Python.
+  BASE_PYTHON := $(shell command -v $(PYTHON))
+  ifneq ($(shell $(or $(BASE_PYTHON),false) -c 'import sys; print(sys.version_info >= (3, 11))' 2> /dev/null),True)
+    $(error springFORM needs Python 3.11 or newer, $(PYTHON) is not: name another with PYTHON=python3.12)
+  endif
+  ifneq ($(shell $(BASE_PYTHON) -c 'import ensurepip, venv; print(1)' 2> /dev/null),1)
+    $(error $(PYTHON) can't make virtual environments: install the package python3-venv, or name another with PYTHON=python3.12)
+  endif
+endif
+
+export PATH := $(VENV)/bin:$(PATH)
+export VIRTUAL_ENV := $(VENV)
+# One interpreter for clippy and for maturin, or the binding is compiled anew each time.
+export PYO3_PYTHON := $(VENV)/bin/python
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+unexport PYTHONPATH PYTHONHOME
+
+.PHONY: help
+help: # list the commands
+	@echo "make COMMAND, where COMMAND is one of"
+	sed -n 's/^\([a-z]*\):[^#=]*# /  \1\t/p' Makefile | expand -t 13
+
+.PHONY: demo
+demo: $(PACKAGE) # evolve the three-cylinder net and draw it
+	@rm -rf $(DEMO)
+	springform evolve three-cylinders --out $(DEMO) --population 100 --generations 80 --types 1,6 --seed 1
+	springform plot $(DEMO) --out $(DEMO)/pictures
+	echo "The run is in $(DEMO), its pictures are in $(DEMO)/pictures."
+
+.PHONY: test
+test: $(PACKAGE) # run the tests of the crates and of the Python package
+	@cargo test --locked --quiet
+	pytest -n 2
+
+.PHONY: lint
+lint: $(PACKAGE) # check layout, lints, types, layers and generated files
+	@cargo fmt --all --check
+	cargo clippy --locked --quiet --workspace --all-targets -- -D warnings
+	ruff check --quiet
+	ruff format --quiet --diff
+	mypy
+	lint-imports
+	python -c "$$print_schema" | diff $(SCHEMA) - || { echo "make schema renews $(SCHEMA)" >&2; exit 1; }
+
+.PHONY: bench
+bench: $(PACKAGE) # time the evaluation of individuals
+	@python bench/individual.py
+
+.PHONY: format
+format: $(REQUIREMENTS) # lay out Rust and Python code
+	@cargo fmt --all
+	ruff check --quiet --fix-only
+	ruff format --quiet
+
+.PHONY: schema
+schema: $(PACKAGE) # write the schema of the design file
+	@python -c "$$print_schema" > $(SCHEMA)
+
+.PHONY: pictures
+pictures: demo # make the pictures of the README
+	@mkdir -p docs/pictures
+	cp $(DEMO)/pictures/net.png docs/pictures/three-cylinders-evolved.png
+
+.PHONY: lock
+lock: # renew Cargo.lock and requirements.lock
+	@cargo update --quiet
+	$(BASE_PYTHON) -m venv --clear build/lock
+	build/lock/bin/pip install --quiet pip==$(PIP_VERSION)
+	build/lock/bin/python -c "$$print_requirements" | xargs -d '\n' build/lock/bin/pip install --quiet
+	{ sed -n 1p requirements.lock; build/lock/bin/pip freeze; } > build/requirements.lock
+	mv build/requirements.lock requirements.lock
+	rm -r build/lock
+
+.PHONY: setup
+setup: $(PACKAGE) # build everything into .venv, as the other commands do by themselves
+
+.PHONY: clean
+clean: # remove what was built; runs stay
+	@rm -rf .venv target build dist .hypothesis .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	find python tests bench -name __pycache__ -prune -exec rm -r {} +
+	rm -f python/springform/_core*.so
+
+$(PACKAGE): $(REQUIREMENTS) pyproject.toml Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name '*.toml')
+	@echo "building springFORM; the first time takes a few minutes …"
+	pip install --quiet --no-deps --no-build-isolation --editable .
+	touch $@
+
+$(REQUIREMENTS): requirements.lock
+	@$(BASE_PYTHON) -m venv --clear $(VENV)
+	pip install --quiet pip==$(PIP_VERSION)
+	pip install --quiet --requirement requirements.lock
+	touch $@
+
+define print_schema
+from springform import canonical_text, design_file
+print(canonical_text.json_text(design_file.json_schema()), end="")
+endef
+export print_schema
+
+# What pyproject.toml asks for, to build, to run and to develop, a line each.
+define print_requirements
+import tomllib
+asked = tomllib.load(open("pyproject.toml", "rb"))
+project = asked["project"]
+groups = asked["build-system"]["requires"], project["dependencies"], project["optional-dependencies"]["dev"]
+print(*sum(groups, []), sep="\n")
+endef
+export print_requirements

@@ -1,0 +1,374 @@
+"""Types of the compiled module: conversion between Python and the Rust crates, no algorithm.
+
+Arrays cross without copies, and the interpreter lock is free during native work. Whatever is
+refused raises `CoreError`. Edits are lines such as ``12.0 subdivide 1 1 6 1``, cells are addresses
+such as ``12.0.3``, nodes are keys such as ``e7:3/8``. Sizes: n nodes, m springs, c expressed
+cells, v base vertices, e base edges, f base faces.
+"""
+
+from typing import Literal, Protocol, TypeAlias, TypedDict, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats: TypeAlias = NDArray[np.float64]
+_Numbers: TypeAlias = NDArray[np.uint32]
+_Vector: TypeAlias = tuple[float, float, float]
+_Side: TypeAlias = Literal["start", "end", "left", "right"]
+_Ending: TypeAlias = Literal["generations", "springs", "differential", "suf"]
+
+_Arc: TypeAlias = tuple[int, str, int, int]
+"""(part, side, first vertex, number of edges)."""
+_Groups: TypeAlias = tuple[_Numbers, _Numbers]
+"""(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""
+_Amount: TypeAlias = tuple[bool, float]
+"""(is a share, number of cells or share of them)."""
+_Strategy: TypeAlias = tuple[_Amount, _Amount, _Amount, str]
+"""(insertions, switches, toggles, weighting)."""
+_Standing: TypeAlias = tuple[int, float | None]
+"""(springs, force differential; None if undefined)."""
+
+__version__: str
+
+class CoreError(ValueError):
+    """A refusal: ``args`` are (key, problem)."""
+
+    args: tuple[str, str]
+
+# --- topology ----------------------------------------------------------------------------------
+
+@final
+class BaseMesh:
+    """Quads with their edges and borders; no coordinates."""
+
+    @staticmethod
+    def from_framework(
+        dia: bool,
+        parts: list[tuple[str, bool, int, int]],
+        joins: list[tuple[_Arc, _Arc, bool, bool]],
+    ) -> BaseMesh:
+        """Join parts (name, closed, around or across, along) at (first, second, reversed, cord)."""
+
+    @staticmethod
+    def from_faces(vertex_count: int, faces: list[list[int]]) -> BaseMesh:
+        """Take quads of four vertex numbers each."""
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of base vertices, v."""
+
+    @property
+    def faces(self) -> _Numbers:
+        """Corners of every face, (f, 4)."""
+
+    @property
+    def edges(self) -> _Numbers:
+        """Ends of every edge, (e, 2)."""
+
+    def faces_at_edge(self, edge: int) -> list[int]:
+        """Return the faces at an edge: one, two or more."""
+
+    def border_vertex(self, part: str, name: str, index: int) -> int | None:
+        """Return a vertex of a part's border by its index; None if there is none."""
+
+    @property
+    def borders(self) -> list[tuple[str, _Side, list[int], bool]]:
+        """(part, side, path of base vertices, closed) of every border."""
+
+    @property
+    def map(self) -> tuple[_Numbers, NDArray[np.int32]]:
+        """Unrolled map: part of every face, (f,), and its corners, (f, 8) half columns and rows."""
+
+@final
+class Forest:
+    """The genotype: quadtrees of cells, and overrides. It does not change."""
+
+    def notation(
+        self, setting: Setting, default: str
+    ) -> tuple[dict[int, str], list[str], list[str]]:
+        """Return the top-level cells that differ from `default`, in notation; added; cut."""
+
+    def edited(self, setting: Setting, edits: list[str]) -> Forest:
+        """Return a forest changed by edits."""
+
+    def cell(self, setting: Setting, address: str) -> tuple[str, bool, bool]:
+        """Return (type and turn, switched on, owns children) of the cell at an address."""
+
+    @property
+    def fingerprint(self) -> int:
+        """A number that equal forests share, below 2^64."""
+
+    @property
+    def stored(self) -> int:
+        """Number of cells, expressed or not."""
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+# --- mechanics ---------------------------------------------------------------------------------
+
+class _NetworkArrays(Protocol):
+    """A bare network; C-contiguous arrays."""
+
+    @property
+    def positions(self) -> _Floats:
+        """(n, 3) [m]."""
+
+    @property
+    def springs(self) -> _Numbers:
+        """(m, 2)."""
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """(n,)."""
+
+    @property
+    def stiffness(self) -> _Floats:
+        """(m,) [N/m]."""
+
+    @property
+    def rest_length(self) -> _Floats:
+        """(m,) [m]."""
+
+    @property
+    def loads(self) -> _Floats:
+        """(n, 3) [N]."""
+
+class _Grown(TypedDict):
+    positions: _Floats
+    springs: _Numbers
+    fixed: NDArray[np.bool_]
+    stiffness: _Floats
+    rest_length: _Floats
+    loads: _Floats
+    nodes: list[str]
+    anchors: _Numbers
+    cells: list[str]
+    cell_squares: _Numbers
+    cell_types: list[str]
+    cell_springs: _Groups
+    spring_cells: _Groups
+    cell_boundaries: _Groups
+    ring: NDArray[np.bool_]
+
+class _Measures(TypedDict):
+    springs: int
+    nodes: int
+    cells: int
+    force_differential: float | None
+    force_min: float
+    force_max: float
+    force_mean: float
+    force_deviation: float
+    force_variation: float
+    force_range: float
+    total_length: float
+    load_path: float
+    area: float
+    shortest_spring: float
+    length_per_area: float
+
+class _MeasuresAndApertures(_Measures):
+    apertures: list[tuple[str, _Side, float, float, _Vector]]
+    """(part, side, perimeter [m], area [m2], unit normal)."""
+
+class _Equilibrium(TypedDict):
+    positions: _Floats
+    forces: _Floats
+    residual: float
+    converged: bool
+    iterations: int
+    reason: str
+
+@final
+class Setting:
+    """Everything of a design but its forest."""
+
+    def __new__(
+        cls,
+        mesh: BaseMesh,
+        cell_types: list[tuple[str, list[str], bool, bool]],
+        method: str,
+        anchors: list[int],
+        anchor_positions: list[_Vector],
+        drawn: list[_Vector] | None,
+        stiffness: float,
+        ring_factor: float,
+        tolerance: float,
+    ) -> Setting:
+        """Take types (name, springs, perimeter, fan) and anchors' vertices and positions [m].
+
+        `drawn` are positions of base vertices [m]; without them they are found from the anchors.
+        `stiffness` is in N/m.
+        """
+
+    def forest(
+        self, kind: str, level: int, cells: dict[int, str], added: list[str], cut: list[str]
+    ) -> Forest:
+        """Make a forest: cells of a type subdivided to a level, but for those in notation."""
+
+    def closed(self, forest: Forest) -> tuple[Forest, list[str]]:
+        """Return a closed copy of a forest, and the edits that closing took."""
+
+    def inverse(self, edits: list[str]) -> list[str]:
+        """Return the edits that undo edits."""
+
+    def canonical(self, edits: list[str]) -> list[str]:
+        """Return edits as they are written canonically."""
+
+    def drawn(self) -> _Floats:
+        """Return the drawn positions of base vertices, (v, 3) [m]."""
+
+    def grow(self, forest: Forest) -> _Grown:
+        """Return the network of a closed forest, before it is solved, and its cells."""
+
+    def measure(self, forest: Forest, positions: _Floats, forces: _Floats) -> _MeasuresAndApertures:
+        """Measure a closed forest at positions, (n, 3) [m], with forces, (m,) [N]."""
+
+    def neighbours(self, forest: Forest, address: str) -> list[str]:
+        """Return the expressed cells that share an edge with an expressed cell."""
+
+    def cell_type(self, word: str) -> str:
+        """Return the canonical word of a cell type that the method allows."""
+
+@final
+class ImplicitEuler:
+    """A bare network on its way to equilibrium."""
+
+    def __new__(
+        cls, network: _NetworkArrays, step: float, growth: float, drag: float
+    ) -> ImplicitEuler: ...
+    def advance(self, tolerance: float) -> _Equilibrium:
+        """Make one time step and return the state after it."""
+
+def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> _Equilibrium:
+    """Solve a bare network by "direct" or "implicit-euler"."""
+
+def residuals(network: _NetworkArrays) -> _Floats:
+    """Return the force out of balance at every free node, (n, 3) [N]."""
+
+# --- evolution ---------------------------------------------------------------------------------
+
+class _Columns(TypedDict):
+    springs: _Numbers
+    nodes: _Numbers
+    cells: _Numbers
+    force_differential: _Floats
+    suf: _Floats
+    force_min: _Floats
+    force_max: _Floats
+    force_mean: _Floats
+    force_deviation: _Floats
+    force_variation: _Floats
+    force_range: _Floats
+    total_length: _Floats
+    load_path: _Floats
+    area: _Floats
+    shortest_spring: _Floats
+    length_per_area: _Floats
+    residual: _Floats
+    valid: NDArray[np.bool_]
+    edits: _Numbers
+    fingerprint: NDArray[np.uint64]
+
+class _Generation(TypedDict):
+    columns: _Columns
+    """One row an individual; undefined numbers are NaN."""
+    winner: int | None
+    """Index of the individual that became parent; None: the parent stayed."""
+    edits: list[str]
+    """What made the winner of the parent before."""
+    strategy: _Strategy
+    """Strategy of the parent now."""
+    suf: float | None
+    """Spring utilization factor of the parent now."""
+
+@final
+class Evolution:
+    """A run of the hybrid evolutionary algorithm at some generation."""
+
+    def __new__(
+        cls,
+        setting: Setting,
+        forest: Forest,
+        *,
+        population: int,
+        seed: int,
+        types: list[str],
+        strategy: _Strategy,
+        base: float,
+        exponent: float,
+        self_adapt: bool,
+        fitness: str,
+        suf_reference: str,
+        niche: int | None,
+        min_length: float | None,
+        selection: str,
+        threads: int,
+        resumed: tuple[int, _Standing, float | None] | None = None,
+    ) -> Evolution:
+        """Start at a forest, or go on after a generation.
+
+        `resumed` is (generation, standing of the run's start, the parent's spring utilization
+        factor). `min_length` is in m.
+        """
+
+    def advance(self) -> _Generation:
+        """Make one generation and take its winner as parent."""
+
+    def individual(self, index: int) -> list[str]:
+        """Return the edits that make an individual of the next generation of the parent now."""
+
+    def reached(
+        self,
+        generations: int | None,
+        springs: int | None,
+        differential: float | None,
+        suf: float | None,
+    ) -> _Ending | None:
+        """Return the ending condition that holds now."""
+
+    @property
+    def forest(self) -> Forest:
+        """Closed genotype of the parent now."""
+
+    @property
+    def measures(self) -> _Measures:
+        """Measures of the parent now."""
+
+    @property
+    def generation(self) -> int:
+        """Number of generations made."""
+
+    @property
+    def start(self) -> _Standing:
+        """Standing of the design that the run began with."""
+
+@final
+class StressSeeking:
+    """A net that is refined where its force is."""
+
+    def __new__(cls, setting: Setting, forest: Forest) -> StressSeeking: ...
+    def advance(self, kind: str) -> list[str]:
+        """Subdivide the cell of highest inner force; return the edits, none if there is no cell."""
+
+    def reached(
+        self, step: int, steps: int | None, differential: float | None, suf: float | None
+    ) -> _Ending | None:
+        """Return the ending condition that holds after `step` steps."""
+
+    @property
+    def suf(self) -> float | None:
+        """Spring utilization factor against the start."""
+
+    @property
+    def forest(self) -> Forest:
+        """Closed genotype now."""
+
+    @property
+    def measures(self) -> _Measures:
+        """Measures now."""
+
+def cell_weight(
+    weighting: str, level: int, deepest: int, inner_force: float, base: float, exponent: float
+) -> float:
+    """Return the weight of a cell in selection; `inner_force` in N."""

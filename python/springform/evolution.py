@@ -1,0 +1,222 @@
+"""Evolving and stress-seeking: the loops round the native core."""
+
+from __future__ import annotations
+
+import os
+import signal
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from .design import Design
+from .errors import InputError
+from .parameters import Parameters, checked_parameters
+from .run import Run, RunWriter, Table, create, open_run, reopen, start_evolution
+
+_FIRST_CHECKPOINT = 1.0
+"""Seconds between checkpoints at first."""
+
+_CHECKPOINT_SHARE = 0.02
+"""Share of the time so far between checkpoints later, so that long runs keep few files."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What one generation gave, as told to `on_generation`."""
+
+    generation: int
+    """Number of the generation, from 1."""
+    springs: int
+    """Springs of the parent now."""
+    force_differential: float | None
+    """Force differential of the parent now."""
+    suf: float | None
+    """Spring utilization factor of the parent now."""
+    columns: Table
+    """Measures of the generation's individuals by name, as in `Run.table`."""
+
+
+OnGeneration = Callable[[Progress], None]
+
+
+def evolve(
+    design: Design,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    on_generation: OnGeneration | None = None,
+    **parameters: Any,
+) -> Run:
+    """Evolve a design and return the run; parameters are those of `Parameters`, by name.
+
+    `out` is the run folder; without it the run lives in a temporary folder as long as the result.
+    `threads` is the number of threads, by default one a core; it does not change the result.
+    A keyboard interrupt leaves a folder that `resume` picks up.
+    Raises `InputError`: a parameter that is not allowed, a design that gives no net, or a folder
+    that already holds a run or can't be written.
+    """
+    checked = checked_parameters(parameters, design.file.method)
+    evolution = start_evolution(design, checked, threads=_threads(threads))
+    keeper = tempfile.TemporaryDirectory(prefix="springform-") if out is None else None
+    folder = out if keeper is None else os.path.join(keeper.name, "run")
+    assert folder is not None
+    with create(folder, design, checked, list(evolution.start)) as writer:
+        writer.log(f"started with {checked.model_dump_json()}")
+        _advance(evolution, checked, writer, on_generation)
+    run = open_run(folder)
+    if keeper is not None:
+        run._keeper = keeper  # type: ignore[attr-defined]  # the folder goes when the run does
+    return run
+
+
+def resume(
+    folder: str | os.PathLike[str] | Run,
+    *,
+    generations: int | None = None,
+    threads: int | None = None,
+    on_generation: OnGeneration | None = None,
+) -> Run:
+    """Go on with a run where it stopped, to the same bits as if it had not; return the run.
+
+    `generations` is a new number of generations to end at. A run that is at its end stays as it is.
+    Raises `RunError`: no run, a broken one, or one that another process drives.
+    """
+    run = folder if isinstance(folder, Run) else open_run(folder)
+    parameters = run.parameters
+    if generations is not None:
+        changed = parameters.model_dump() | {"generations": generations}
+        parameters = checked_parameters(changed, run.design.file.method)
+    with reopen(run) as writer:
+        if parameters != run.parameters:
+            writer.change(run.generations, {"generations": generations})
+        writer.log(f"resumed after generation {run.generations}")
+        evolution = run.evolution(run.generations, threads=_threads(threads))
+        _advance(evolution, parameters, writer, on_generation)
+    return open_run(run.folder)
+
+
+@dataclass(frozen=True)
+class SeekStep:
+    """One step of direct stress-seeking."""
+
+    step: int
+    """Steps made, from 1."""
+    design: Design
+    """The design after the step."""
+    edits: list[str]
+    """What the step did."""
+    springs: int
+    """Number of springs."""
+    force_differential: float | None
+    """Largest over smallest force."""
+    suf: float | None
+    """Spring utilization factor against the start."""
+
+
+def seek(
+    design: Design,
+    *,
+    steps: int,
+    type: int | str = 1,
+    until_differential: float | None = None,
+    until_suf: float | None = None,
+) -> Iterator[SeekStep]:
+    """Subdivide the cell of highest inner force, solve, repeat (the paper, section 3.5).
+
+    Yields every step; ends after `steps`, at a condition, or when no cell can be divided.
+    Raises `InputError`: a type that the method does not allow, or a design that gives no net.
+    """
+    design.network()
+    try:
+        kind = design.setting.cell_type(str(type))
+        seeking = _core.StressSeeking(design.setting, design.closed.forest)
+    except _core.CoreError as error:
+        key, problem = error.args
+        raise InputError(problem, key=key) from None
+    now = design.closed
+    for step in range(1, steps + 1):
+        edits = seeking.advance(kind)
+        if not edits:
+            return
+        now = now.edited(edits)
+        measures = seeking.measures
+        yield SeekStep(
+            step, now, edits, measures["springs"], measures["force_differential"], seeking.suf
+        )
+        if seeking.reached(step, None, until_differential, until_suf):
+            return
+
+
+def _threads(threads: int | None) -> int:
+    if threads is None:
+        return os.cpu_count() or 1
+    if not 1 <= threads <= 1024:
+        raise InputError(f"must be 1 to 1024, not {threads}", key="threads")
+    return threads
+
+
+def _advance(
+    evolution: _core.Evolution,
+    parameters: Parameters,
+    writer: RunWriter,
+    on_generation: OnGeneration | None,
+) -> None:
+    began = written = time.monotonic()
+    reason = evolution.reached(*parameters.ending())
+    with _interrupts_noted() as interrupted:
+        while reason is None:
+            result = evolution.advance()
+            parent = evolution.measures
+            generation = evolution.generation
+            writer.add(generation, result, parent)
+            now = time.monotonic()
+            if now - written > max(_FIRST_CHECKPOINT, _CHECKPOINT_SHARE * (now - began)):
+                writer.checkpoint()
+                written = now
+            if on_generation is not None:
+                on_generation(_progress(generation, result, parent))
+            reason = evolution.reached(*parameters.ending())
+            if interrupted:
+                writer.checkpoint()
+                writer.log(f"interrupted after generation {generation}")
+                raise KeyboardInterrupt
+        writer.checkpoint()
+        writer.log(f"ended by {reason} after generation {evolution.generation}")
+
+
+@contextmanager
+def _interrupts_noted() -> Iterator[list[int]]:
+    """Yield a list that a keyboard interrupt fills, so that it waits for the generation's end.
+
+    A second one interrupts at once. Outside the main thread no interrupt arrives anyway.
+    """
+    noted: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield noted
+        return
+
+    def note(number: int, frame: FrameType | None) -> None:
+        if noted:
+            raise KeyboardInterrupt
+        noted.append(number)
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield noted
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _progress(generation: int, result: dict[str, Any], parent: dict[str, Any]) -> Progress:
+    columns: dict[str, np.ndarray[Any, Any]] = result["columns"]
+    return Progress(
+        generation, parent["springs"], parent["force_differential"], result["suf"], columns
+    )

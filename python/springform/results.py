@@ -1,0 +1,64 @@
+"""Results of a solve as files that other programs read: tables, measures and lines."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from .design import Design, Measures
+from .design_file import dump
+from .exchange.obj import line_obj
+from .files import WriteError, explain, write_atomically
+from .network import Equilibrium
+
+
+def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: Path) -> list[Path]:
+    """Write design.toml, nodes.csv, springs.csv, measures.json and net.obj; return their paths.
+
+    Lengths in m, forces in N, stiffness in N/m. Raises `WriteError`: the folder can't be written.
+    """
+    network = design.network()
+    anchors = dict(zip(design.anchors.tolist(), design.anchor_names, strict=True))
+    positions = equilibrium.positions.tolist()
+    nodes = (
+        (number, key, *position, anchors.get(number, ""))
+        for number, (key, position) in enumerate(zip(design.nodes, positions, strict=True))
+    )
+    ends = equilibrium.positions[network.springs]
+    lengths = ((ends[:, 0] - ends[:, 1]) ** 2).sum(axis=1) ** 0.5
+    springs = zip(
+        range(len(network.springs)),
+        *network.springs.T.tolist(),
+        network.stiffness.tolist(),
+        network.rest_length.tolist(),
+        lengths.tolist(),
+        equilibrium.forces.tolist(),
+        strict=True,
+    )
+    spring_header = ["spring", "node_a", "node_b", "stiffness", "rest_length", "length", "force"]
+    contents = {
+        "design.toml": dump(design.to_file(), "toml"),
+        "nodes.csv": _csv(["node", "key", "x", "y", "z", "anchor"], nodes),
+        "springs.csv": _csv(spring_header, springs),
+        "measures.json": json.dumps(asdict(measures), indent=2) + "\n",
+        "net.obj": line_obj(equilibrium.positions, network.springs),
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise WriteError(f"can't be made: {explain(error)}", file=folder) from None
+    for name, text in contents.items():
+        write_atomically(folder / name, text.encode())
+    return [folder / name for name in contents]
+
+
+def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return text.getvalue()

@@ -1,0 +1,479 @@
+"""Run folders: everything that a run needs to be read, resumed and rebuilt.
+
+    RUN/run.json          format version, versions of the software, parameters
+    RUN/design.toml       the design that the run started from
+    RUN/journal.jsonl     one line a generation: the winner and its edits; appended
+    RUN/measures/*.parquet   measures of every individual, one file a checkpoint
+    RUN/log.txt           what happened when
+    RUN/lock              held while a process drives the run
+
+A checkpoint writes its measures first, then its journal lines. What a crash leaves behind the last
+complete checkpoint is dropped on resuming and computed again, to the same bits.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import io
+import json
+import os
+import platform
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from . import _core
+from .design import Design, load, save
+from .errors import InputError, RunError
+from .files import WriteError, explain, read_text, write_atomically
+from .network import TOLERANCE
+from .parameters import Parameters, checked_parameters
+
+VERSION = 1
+"""Version of the run folder's format."""
+
+Table = dict[str, NDArray[Any]]
+"""Columns by name, one row an individual in order of generation and index; undefined is NaN."""
+
+
+class Run:
+    """A run folder, as far as it is complete.
+
+    Attributes: `folder`, `design` (the start), `parameters`.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        """Open a run folder. Raises `RunError`: it holds no run, or a broken one."""
+        self.folder = Path(folder)
+        self._settings = _read_settings(self.folder)
+        self.design = load(self.folder / "design.toml")
+        lines, parts = _read_journal(self.folder), _parts(self.folder)
+        self.generations = _complete(lines, parts)
+        self._lines = [line for line in lines if line["generation"] <= self.generations]
+        self._parts = [part for part in parts if part[1] <= self.generations]
+        self.parameters = _current_parameters(self._settings, self._lines, self.design)
+
+    @property
+    def parents(self) -> list[int | None]:
+        """Index of the winner of every generation; None where the parent stayed."""
+        return [line["parent"] for line in self._generation_lines]
+
+    @property
+    def _generation_lines(self) -> list[dict[str, Any]]:
+        return [line for line in self._lines if "parent" in line]
+
+    @cached_property
+    def table(self) -> Table:
+        """Measures of every individual. Raises `RunError`: a file of measures is broken."""
+        tables = [_read_part(path, first, last) for first, last, path in self._parts]
+        if not tables:
+            return {}
+        merged = pa.concat_tables(tables)
+        return {name: _numpy(merged.column(name)) for name in merged.column_names}
+
+    @property
+    def best(self) -> Design:
+        """The final parent."""
+        return self.parent(self.generations)
+
+    def parent(self, generation: int) -> Design:
+        """Return the parent chosen in a generation; 0 is the start with its filters applied."""
+        self._check_generation(generation, first=0)
+        edits = [edit for line in self._generation_lines[:generation] for edit in line["edits"]]
+        return self.design.closed.edited(edits).renamed(f"{self.design.name} {generation}")
+
+    def individual(self, generation: int, individual: int) -> Design:
+        """Rebuild any individual that was ever evaluated. Raises `RunError`: there is no such."""
+        self._check_generation(generation, first=1)
+        if not 0 <= individual < self.parameters.population:
+            last = self.parameters.population - 1
+            raise RunError(f"there is no individual {individual}; there are 0 to {last}")
+        parent = self.parent(generation - 1)
+        edits = self.evolution(generation - 1, threads=1).individual(individual)
+        return parent.edited(edits).renamed(f"{self.design.name} {generation}/{individual}")
+
+    @property
+    def start(self) -> dict[str, Any]:
+        """Springs, force differential and SUF of the start."""
+        springs, differential = self._settings["start"]
+        return {"springs": springs, "force_differential": differential, "suf": None}
+
+    @property
+    def final(self) -> dict[str, Any]:
+        """Springs, force differential and SUF of the final parent."""
+        lines = self._generation_lines
+        if not lines:
+            return self.start
+        return {name: lines[-1][name] for name in ("springs", "force_differential", "suf")}
+
+    @property
+    def lowest(self) -> tuple[int, int] | None:
+        """(generation, individual) of the lowest force differential; None if there is none."""
+        row = self._lowest_row()
+        return None if row is None else (self._at("generation", row), self._at("individual", row))
+
+    @property
+    def lowest_standing(self) -> dict[str, Any] | None:
+        """Springs, force differential and SUF of the individual of lowest force differential."""
+        row = self._lowest_row()
+        if row is None:
+            return None
+        suf = float(self.table["suf"][row])
+        return {
+            "springs": self._at("springs", row),
+            "force_differential": float(self.table["force_differential"][row]),
+            "suf": None if np.isnan(suf) else suf,
+        }
+
+    def pareto(self) -> NDArray[np.int64]:
+        """Return the rows of the Pareto set: no other has as many springs at a lower differential.
+
+        Ascending in springs and force differential.
+        """
+        table = self.table
+        if not table:
+            return np.empty(0, dtype=np.int64)
+        rows = np.flatnonzero(~np.isnan(table["force_differential"]))
+        differential, springs = table["force_differential"][rows], table["springs"][rows]
+        order = np.lexsort((rows, differential, -springs.astype(np.int64)))
+        lowest = np.minimum.accumulate(np.concatenate(([np.inf], differential[order][:-1])))
+        front: NDArray[np.int64] = rows[order[differential[order] < lowest]][::-1]
+        return front
+
+    def digest(self) -> str:
+        """Return a hash of the final genotype and of the whole table of measures."""
+        state = hashlib.sha256()
+        cells, added, cut = self.best.forest.notation(self.design.setting, "")
+        state.update(json.dumps([cells, added, cut]).encode())
+        for name, column in self.table.items():
+            state.update(name.encode())
+            state.update(
+                np.ascontiguousarray(column).astype(column.dtype.newbyteorder("<")).tobytes()
+            )
+        return state.hexdigest()
+
+    def evolution(self, generation: int, *, threads: int) -> _core.Evolution:
+        """Return the algorithm as it stood after a generation."""
+        self._check_generation(generation, first=0)
+        parameters = self.parameters
+        line = self._generation_lines[generation - 1] if generation else {}
+        strategy = line.get("strategy")
+        springs, differential = self._settings["start"]
+        return start_evolution(
+            self.parent(generation),
+            parameters,
+            threads=threads,
+            strategy=_strategy_from_json(strategy) if strategy else None,
+            resumed=(generation, (springs, differential), line.get("suf")),
+        )
+
+    def _lowest_row(self) -> int | None:
+        differential = self.table.get("force_differential")
+        if differential is None or np.isnan(differential).all():
+            return None
+        return int(np.nanargmin(differential))
+
+    def _at(self, column: str, row: int) -> int:
+        return int(self.table[column][row])
+
+    def _check_generation(self, generation: int, first: int) -> None:
+        if not first <= generation <= self.generations:
+            raise RunError(
+                f"there is no generation {generation}; there are {first} to {self.generations}",
+                file=self.folder,
+            )
+
+
+def open_run(folder: str | os.PathLike[str]) -> Run:
+    """Open a run folder. Raises `RunError`: it holds no run, or a broken one."""
+    return Run(folder)
+
+
+def is_run(folder: str | os.PathLike[str]) -> bool:
+    """Whether a folder holds a run."""
+    return (Path(folder) / "run.json").is_file()
+
+
+def start_evolution(
+    design: Design,
+    parameters: Parameters,
+    *,
+    threads: int,
+    strategy: Any = None,
+    resumed: Any = None,
+) -> _core.Evolution:
+    """Return the algorithm at a design. Raises `DesignError`: it gives no net."""
+    # A design that gives no net says why, with file and key.
+    design.network()
+    try:
+        types = [design.setting.cell_type(kind) for kind in parameters.types]
+        return _core.Evolution(
+            design.setting,
+            design.forest,
+            population=parameters.population,
+            seed=parameters.seed,
+            types=types,
+            strategy=parameters.strategy() if strategy is None else strategy,
+            base=parameters.weight_base,
+            exponent=parameters.weight_exponent,
+            self_adapt=parameters.self_adapt,
+            fitness=parameters.fitness,
+            suf_reference=parameters.suf_reference,
+            niche=parameters.niche,
+            min_length=parameters.min_length,
+            selection=parameters.selection,
+            threads=threads,
+            resumed=resumed,
+        )
+    except _core.CoreError as error:
+        key, problem = error.args
+        raise InputError(problem, key=key) from None
+
+
+class RunWriter:
+    """Writes a run folder while a run goes on; made by `create` or `reopen`, under a lock."""
+
+    def __init__(self, folder: Path) -> None:
+        """Write into a run folder that exists and is locked."""
+        self._folder = folder
+        self._waiting: list[tuple[Mapping[str, NDArray[Any]], dict[str, Any]]] = []
+
+    def add(self, generation: int, result: Mapping[str, Any], parent: Mapping[str, Any]) -> None:
+        """Keep one generation until the next checkpoint."""
+        count = len(result["columns"]["springs"])
+        place = {
+            "generation": np.full(count, generation, dtype=np.uint32),
+            "individual": np.arange(count, dtype=np.uint32),
+        }
+        line = {
+            "generation": generation,
+            "parent": result["winner"],
+            "springs": parent["springs"],
+            "force_differential": parent["force_differential"],
+            "suf": result["suf"],
+            "strategy": result["strategy"],
+            "edits": result["edits"],
+        }
+        self._waiting.append((place | result["columns"], line))
+
+    def checkpoint(self) -> None:
+        """Write what was added. Raises `WriteError`: nothing of it counts as written then."""
+        if not self._waiting:
+            return
+        columns, lines = zip(*self._waiting, strict=True)
+        first, last = lines[0]["generation"], lines[-1]["generation"]
+
+        def column(name: str) -> pa.Array:
+            return pa.array(np.concatenate([rows[name] for rows in columns]), from_pandas=True)
+
+        table = pa.table({name: column(name) for name in columns[0]})
+        sink = pa.BufferOutputStream()
+        pq.write_table(table, sink, compression="zstd")
+        name = f"{first:07}-{last:07}.parquet"
+        write_atomically(self._folder / "measures" / name, sink.getvalue().to_pybytes())
+        self._append("journal.jsonl", lines)
+        self._waiting = []
+
+    def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
+        """Journal a change of parameters that holds from a generation on."""
+        self._append("journal.jsonl", [{"generation": generation, "parameters": dict(parameters)}])
+
+    def log(self, message: str) -> None:
+        """Add a line to the log."""
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        self._append_text("log.txt", f"{now} {message}\n")
+
+    def _append(self, name: str, lines: Sequence[Mapping[str, Any]]) -> None:
+        self._append_text(name, "".join(f"{json.dumps(line)}\n" for line in lines))
+
+    def _append_text(self, name: str, text: str) -> None:
+        path = self._folder / name
+        try:
+            with open(path, "ab") as file:
+                before = file.tell()
+                try:
+                    file.write(text.encode())
+                    file.flush()
+                    os.fsync(file.fileno())
+                except OSError:
+                    # Half a line would stand in the way of everything that follows.
+                    os.ftruncate(file.fileno(), before)
+                    raise
+        except OSError as error:
+            raise WriteError(f"can't be written: {explain(error)}", file=path) from None
+
+
+@contextmanager
+def create(
+    folder: str | os.PathLike[str], design: Design, parameters: Parameters, start: Any
+) -> Iterator[RunWriter]:
+    """Make a run folder and hold its lock.
+
+    Raises `RunError`: the folder already holds a run. `WriteError`: it can't be written.
+    """
+    path = Path(folder)
+    if is_run(path):
+        raise RunError("already holds a run; resume it or choose another folder", file=path)
+    try:
+        (path / "measures").mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise WriteError(f"can't be made: {explain(error)}", file=path) from None
+    with _locked(path):
+        if _parts(path) or (path / "journal.jsonl").exists():
+            raise RunError("holds the rest of another run; choose another folder", file=path)
+        save(design, path / "design.toml")
+        settings = {
+            "springform_run": VERSION,
+            "versions": {
+                "springform": _core.__version__,
+                "python": platform.python_version(),
+                "numpy": np.__version__,
+                "machine": platform.machine(),
+            },
+            "tolerance": TOLERANCE,
+            "start": start,
+            "parameters": parameters.model_dump(mode="json"),
+        }
+        # Last, because a folder with this file counts as a run.
+        write_atomically(path / "run.json", (json.dumps(settings, indent=2) + "\n").encode())
+        yield RunWriter(path)
+
+
+@contextmanager
+def reopen(run: Run) -> Iterator[RunWriter]:
+    """Hold the lock of a run folder, dropping what lies behind its last complete checkpoint.
+
+    Raises `RunError`: another process drives the run. `WriteError`: it can't be written.
+    """
+    with _locked(run.folder):
+        kept = "".join(f"{json.dumps(line)}\n" for line in run._lines)
+        write_atomically(run.folder / "journal.jsonl", kept.encode())
+        for _, last, path in _parts(run.folder):
+            if last > run.generations:
+                path.unlink(missing_ok=True)
+        yield RunWriter(run.folder)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    path = folder / "lock"
+    try:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise WriteError(f"can't be written: {explain(error)}", file=path) from None
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise RunError("another process drives this run; wait for it", file=folder) from None
+    finally:
+        os.close(lock)
+
+
+def _broken(path: Path, problem: str, line: int | None = None) -> RunError:
+    return RunError(f"{problem}; the run folder is damaged, restore it", file=path, line=line)
+
+
+def _read_settings(folder: Path) -> dict[str, Any]:
+    path = folder / "run.json"
+    if not path.exists():
+        raise RunError("holds no run: run.json is missing", file=folder)
+    try:
+        settings = json.loads(read_text(path, RunError))
+        version, start = settings["springform_run"], settings["start"]
+        if not isinstance(settings["parameters"], dict) or len(start) != 2:
+            raise TypeError
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise _broken(path, "is no run's settings") from None
+    if version != VERSION:
+        raise RunError(f"has version {version}; this program reads version {VERSION}", file=path)
+    return dict(settings)
+
+
+def _read_journal(folder: Path) -> list[dict[str, Any]]:
+    path = folder / "journal.jsonl"
+    if not path.exists():
+        return []
+    text = read_text(path, RunError)
+    # A line without its end was being written when the process died.
+    complete = text[: text.rfind("\n") + 1].splitlines()
+    lines, generation = [], 0
+    for number, row in enumerate(complete, start=1):
+        try:
+            line = json.loads(row)
+            if "parent" in line:
+                generation += 1
+                line["edits"], line["springs"], line["suf"], line["force_differential"]
+                if line["generation"] != generation:
+                    raise ValueError
+            elif not isinstance(line["parameters"], dict):
+                raise TypeError
+        except (ValueError, KeyError, TypeError, RecursionError):
+            raise _broken(path, "is no line of a journal", number) from None
+        lines.append(line)
+    return lines
+
+
+def _parts(folder: Path) -> list[tuple[int, int, Path]]:
+    """(first generation, last generation, file) of every file of measures, ascending."""
+    parts = []
+    for path in sorted((folder / "measures").glob("*.parquet")):
+        first, _, last = path.stem.partition("-")
+        if not (first.isdecimal() and last.isdecimal()):
+            raise _broken(path, "is no file of measures")
+        parts.append((int(first), int(last), path))
+    return parts
+
+
+def _complete(lines: Sequence[Mapping[str, Any]], parts: Sequence[tuple[int, int, Path]]) -> int:
+    """The last generation of which the journal and all measures are there."""
+    journalled = sum("parent" in line for line in lines)
+    complete = 0
+    for first, last, path in parts:
+        if first != complete + 1:
+            raise _broken(path, f"the measures of generation {complete + 1} are missing before it")
+        if last > journalled:
+            break
+        complete = last
+    return complete
+
+
+def _current_parameters(
+    settings: Mapping[str, Any], lines: Sequence[Mapping[str, Any]], design: Design
+) -> Parameters:
+    values = dict(settings["parameters"])
+    for line in lines:
+        values |= line.get("parameters", {})
+    return checked_parameters(values, design.file.method)
+
+
+def _read_part(path: Path, first: int, last: int) -> pa.Table:
+    try:
+        table = pq.read_table(io.BytesIO(path.read_bytes()))
+        generations = table.column("generation").to_numpy()
+    except (OSError, pa.ArrowException, KeyError):
+        raise _broken(path, "is no complete file of measures") from None
+    if len(generations) == 0 or generations[0] != first or generations[-1] != last:
+        raise _broken(path, "holds other generations than its name says")
+    return table
+
+
+def _numpy(column: pa.ChunkedArray) -> NDArray[Any]:
+    if pa.types.is_floating(column.type):
+        column = column.fill_null(float("nan"))
+    array: NDArray[Any] = column.to_numpy()
+    return array
+
+
+def _strategy_from_json(strategy: Any) -> Any:
+    *amounts, weighting = strategy
+    return (*((bool(share), float(number)) for share, number in amounts), weighting)
