@@ -58,7 +58,7 @@ test: $(PACKAGE) # run the tests of the crates and of the Python package
 
 .PHONY: lint
 lint: $(PACKAGE) # check layout, lints, types, layers and generated files
-	@cargo fmt --all --check
+	@cargo fmt --all --check -- --files-with-diff
 	cargo clippy --locked --quiet --workspace --all-targets -- -D warnings
 	ruff check --quiet
 	ruff format --quiet --diff

@@ -6,10 +6,24 @@ such as ``12.0.3``, nodes are keys such as ``e7:3/8``. Sizes: n nodes, m springs
 cells, v base vertices, e base edges, f base faces.
 """
 
-from typing import Literal, Protocol, TypeAlias, TypedDict, final
+from typing import Any, Literal, Protocol, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
+
+__all__ = [
+    "BaseMesh",
+    "CoreError",
+    "Evolution",
+    "Forest",
+    "ImplicitEuler",
+    "Net",
+    "Setting",
+    "StressSeeking",
+    "__version__",
+    "residuals",
+    "solve",
+]
 
 _Floats: TypeAlias = NDArray[np.float64]
 _Numbers: TypeAlias = NDArray[np.uint32]
@@ -64,9 +78,6 @@ class BaseMesh:
     @property
     def edges(self) -> _Numbers:
         """Ends of every edge, (e, 2)."""
-
-    def faces_at_edge(self, edge: int) -> list[int]:
-        """Return the faces at an edge: one, two or more."""
 
     def border_vertex(self, part: str, name: str, index: int) -> int | None:
         """Return a vertex of a part's border by its index; None if there is none."""
@@ -133,22 +144,13 @@ class _NetworkArrays(Protocol):
     def loads(self) -> _Floats:
         """(n, 3) [N]."""
 
-class _Grown(TypedDict):
+class _Arrays(TypedDict):
     positions: _Floats
     springs: _Numbers
     fixed: NDArray[np.bool_]
     stiffness: _Floats
     rest_length: _Floats
     loads: _Floats
-    nodes: list[str]
-    anchors: _Numbers
-    cells: list[str]
-    cell_squares: _Numbers
-    cell_types: list[str]
-    cell_springs: _Groups
-    spring_cells: _Groups
-    cell_boundaries: _Groups
-    ring: NDArray[np.bool_]
 
 class _Measures(TypedDict):
     springs: int
@@ -212,23 +214,65 @@ class Setting:
     def inverse(self, edits: list[str]) -> list[str]:
         """Return the edits that undo edits."""
 
-    def canonical(self, edits: list[str]) -> list[str]:
-        """Return edits as they are written canonically."""
-
     def drawn(self) -> _Floats:
         """Return the drawn positions of base vertices, (v, 3) [m]."""
 
-    def grow(self, forest: Forest) -> _Grown:
-        """Return the network of a closed forest, before it is solved, and its cells."""
-
-    def measure(self, forest: Forest, positions: _Floats, forces: _Floats) -> _MeasuresAndApertures:
-        """Measure a closed forest at positions, (n, 3) [m], with forces, (m,) [N]."""
+    def grow(self, forest: Forest) -> tuple[Net, _Arrays]:
+        """Return the net of a closed forest, and its network's arrays."""
 
     def neighbours(self, forest: Forest, address: str) -> list[str]:
         """Return the expressed cells that share an edge with an expressed cell."""
 
     def cell_type(self, word: str) -> str:
         """Return the canonical word of a cell type that the method allows."""
+
+@final
+class Net:
+    """Nodes, springs and cells of a grown net."""
+
+    @property
+    def nodes(self) -> list[str]:
+        """Key of every node."""
+
+    @property
+    def anchors(self) -> _Numbers:
+        """Node of every anchor."""
+
+    @property
+    def ring(self) -> NDArray[np.bool_]:
+        """Which springs lie along a free ring or rim, (m,)."""
+
+    @property
+    def cells(self) -> list[str]:
+        """Addresses of the expressed cells."""
+
+    @property
+    def cell_squares(self) -> _Numbers:
+        """Face, level, column and row of every expressed cell, (c, 4)."""
+
+    @property
+    def cell_types(self) -> list[str]:
+        """Types of the expressed cells, as expressed."""
+
+    @property
+    def cell_springs(self) -> _Groups:
+        """Springs of every expressed cell."""
+
+    @property
+    def spring_cells(self) -> _Groups:
+        """Expressed cells of every spring."""
+
+    @property
+    def cell_boundaries(self) -> _Groups:
+        """Nodes around every expressed cell, corner c0 first."""
+
+    def inner_forces(self, forces: _Floats) -> _Floats:
+        """Return the sum of spring forces of every expressed cell, (c,) [N]."""
+
+    def measure(
+        self, network: _NetworkArrays, positions: _Floats, forces: _Floats
+    ) -> _MeasuresAndApertures:
+        """Measure the net at positions, (n, 3) [m], with forces, (m,) [N]."""
 
 @final
 class ImplicitEuler:
@@ -248,30 +292,8 @@ def residuals(network: _NetworkArrays) -> _Floats:
 
 # --- evolution ---------------------------------------------------------------------------------
 
-class _Columns(TypedDict):
-    springs: _Numbers
-    nodes: _Numbers
-    cells: _Numbers
-    force_differential: _Floats
-    suf: _Floats
-    force_min: _Floats
-    force_max: _Floats
-    force_mean: _Floats
-    force_deviation: _Floats
-    force_variation: _Floats
-    force_range: _Floats
-    total_length: _Floats
-    load_path: _Floats
-    area: _Floats
-    shortest_spring: _Floats
-    length_per_area: _Floats
-    residual: _Floats
-    valid: NDArray[np.bool_]
-    edits: _Numbers
-    fingerprint: NDArray[np.uint64]
-
 class _Generation(TypedDict):
-    columns: _Columns
+    columns: dict[str, NDArray[Any]]
     """One row an individual; undefined numbers are NaN."""
     winner: int | None
     """Index of the individual that became parent; None: the parent stayed."""
@@ -368,7 +390,3 @@ class StressSeeking:
     def measures(self) -> _Measures:
         """Measures now."""
 
-def cell_weight(
-    weighting: str, level: int, deepest: int, inner_force: float, base: float, exponent: float
-) -> float:
-    """Return the weight of a cell in selection; `inner_force` in N."""

@@ -347,6 +347,9 @@ def plot_command(
     as_json: Json = False,
 ) -> None:
     """Draw the net coloured by force, its forces and cells, and how a run went."""
+    # Matplotlib takes longer to import than most commands take to run.
+    from . import plots  # noqa: PLC0415
+
     folder = is_run(source) or os.path.isdir(source)
     subject = open_run(source) if folder else load(source)
     try:

@@ -145,8 +145,13 @@ class Design:
     # --- growing -------------------------------------------------------------------------------
 
     @cached_property
-    def _grown(self) -> dict[str, Any]:
-        return self._build(lambda: self.setting.grow(self.closed.forest))
+    def _grown(self) -> tuple[_core.Net, Network]:
+        net, arrays = self._build(lambda: self.setting.grow(self.closed.forest))
+        return net, Network(**arrays)
+
+    @property
+    def _net(self) -> _core.Net:
+        return self._grown[0]
 
     @cached_property
     def closed(self) -> Design:
@@ -156,34 +161,24 @@ class Design:
 
     def network(self) -> Network:
         """Grow the net: springs after all filters. Raises `DesignError`: nothing is left."""
-        grown = self._grown
-        names = ("stiffness", "rest_length", "loads")
-        return Network(
-            grown["positions"], grown["springs"], grown["fixed"], **{n: grown[n] for n in names}
-        )
+        return self._grown[1]
 
-    @property
+    @cached_property
     def nodes(self) -> list[str]:
         """Keys of the nodes, in the order of the network's: ``v12``, ``e7:3/8``, ``f5:1/2,3/4``."""
-        nodes: list[str] = self._grown["nodes"]
-        return nodes
+        return self._net.nodes
 
     @property
     def anchors(self) -> NDArray[np.uint32]:
         """Node of every anchor, in the order of `anchor_names`."""
-        anchors: NDArray[np.uint32] = self._grown["anchors"]
-        return anchors
+        return self._net.anchors
 
     @cached_property
     def cells(self) -> Cells:
         """The expressed cells."""
-        grown = self._grown
+        net = self._net
         return Cells(
-            grown["cells"],
-            grown["cell_squares"],
-            grown["cell_types"],
-            grown["cell_springs"],
-            grown["cell_boundaries"],
+            net.cells, net.cell_squares, net.cell_types, net.cell_springs, net.cell_boundaries
         )
 
     # --- queries -------------------------------------------------------------------------------
@@ -219,7 +214,9 @@ class Design:
 
     def measure(self, equilibrium: Equilibrium) -> Measures:
         """Measure an equilibrium of this design."""
-        values = self.setting.measure(self.closed.forest, equilibrium.positions, equilibrium.forces)
+        values: dict[str, Any] = self._build(
+            lambda: self._net.measure(self.network(), equilibrium.positions, equilibrium.forces)
+        )
         apertures = tuple(
             Aperture(f"{part}.{side}", perimeter, area, normal)
             for part, side, perimeter, area, normal in values.pop("apertures")
@@ -228,9 +225,7 @@ class Design:
 
     def inner_forces(self, equilibrium: Equilibrium) -> Floats:
         """Return the sum of spring forces of every expressed cell [N] (the paper, section 3.5)."""
-        starts, items = self.cells.springs
-        sums = np.concatenate(([0.0], np.cumsum(equilibrium.forces[items])))
-        inner: Floats = sums[starts[1:]] - sums[starts[:-1]]
+        inner: Floats = self._build(lambda: self._net.inner_forces(equilibrium.forces))
         return inner
 
     # --- change --------------------------------------------------------------------------------

@@ -13,10 +13,8 @@ from dataclasses import dataclass
 from types import FrameType
 from typing import Any
 
-import numpy as np
-
 from . import _core
-from .design import Design
+from .design import Design, save
 from .errors import InputError
 from .parameters import Parameters, checked_parameters
 from .run import Run, RunWriter, Table, create, open_run, reopen, start_evolution
@@ -71,7 +69,7 @@ def evolve(
     with create(folder, design, checked, list(evolution.start)) as writer:
         writer.log(f"started with {checked.model_dump_json()}")
         _advance(evolution, checked, writer, on_generation)
-    run = open_run(folder)
+    run = _finished(folder)
     if keeper is not None:
         run._keeper = keeper  # type: ignore[attr-defined]  # the folder goes when the run does
     return run
@@ -100,7 +98,7 @@ def resume(
         writer.log(f"resumed after generation {run.generations}")
         evolution = run.evolution(run.generations, threads=_threads(threads))
         _advance(evolution, parameters, writer, on_generation)
-    return open_run(run.folder)
+    return _finished(run.folder)
 
 
 @dataclass(frozen=True)
@@ -155,6 +153,12 @@ def seek(
             return
 
 
+def _finished(folder: str | os.PathLike[str]) -> Run:
+    run = open_run(folder)
+    save(run.best, run.folder / "best.toml")
+    return run
+
+
 def _threads(threads: int | None) -> int:
     if threads is None:
         return os.cpu_count() or 1
@@ -182,7 +186,15 @@ def _advance(
                 writer.checkpoint()
                 written = now
             if on_generation is not None:
-                on_generation(_progress(generation, result, parent))
+                on_generation(
+                    Progress(
+                        generation,
+                        parent["springs"],
+                        parent["force_differential"],
+                        result["suf"],
+                        result["columns"],
+                    )
+                )
             reason = evolution.reached(*parameters.ending())
             if interrupted:
                 writer.checkpoint()
@@ -213,10 +225,3 @@ def _interrupts_noted() -> Iterator[list[int]]:
         yield noted
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-def _progress(generation: int, result: dict[str, Any], parent: dict[str, Any]) -> Progress:
-    columns: dict[str, np.ndarray[Any, Any]] = result["columns"]
-    return Progress(
-        generation, parent["springs"], parent["force_differential"], result["suf"], columns
-    )

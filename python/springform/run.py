@@ -4,6 +4,7 @@
     RUN/design.toml       the design that the run started from
     RUN/journal.jsonl     one line a generation: the winner and its edits; appended
     RUN/measures/*.parquet   measures of every individual, one file a checkpoint
+    RUN/best.toml         the final parent, once the run has ended
     RUN/log.txt           what happened when
     RUN/lock              held while a process drives the run
 
@@ -371,10 +372,11 @@ def _locked(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise WriteError(f"can't be written: {explain(error)}", file=path) from None
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise RunError("another process drives this run; wait for it", file=folder) from None
         yield
-    except BlockingIOError:
-        raise RunError("another process drives this run; wait for it", file=folder) from None
     finally:
         os.close(lock)
 

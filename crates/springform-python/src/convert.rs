@@ -20,11 +20,11 @@ pub fn rows<'py, T: numpy::Element, const WIDTH: usize>(
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, WIDTH])
 }
 
-/// Groups as (starts, items): the items of group g are `items[starts[g]:starts[g + 1]]`.
-pub fn groups<'py>(
-    py: Python<'py>,
-    groups: &Groups<u32>,
-) -> (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>) {
+/// (starts, items): the items of group g are `items[starts[g]:starts[g + 1]]`.
+pub type GroupArrays<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+
+/// Groups as two arrays.
+pub fn groups<'py>(py: Python<'py>, groups: &Groups<u32>) -> GroupArrays<'py> {
     (PyArray1::from_slice(py, groups.starts()), PyArray1::from_slice(py, groups.items()))
 }
 

@@ -10,7 +10,7 @@ use springform_evolution::ending::Ending;
 use springform_evolution::evolve::{self, Generation, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, Standing, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
-use springform_evolution::selection::{Weighting, WeightingParameters, weight};
+use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_evolution::stress_seeking;
 use springform_mechanics::measures::Measures;
 
@@ -232,20 +232,6 @@ const COLUMN_NAMES: [&str; 11] = [
     "shortest_spring",
     "length_per_area",
 ];
-
-/// Weight of a cell in selection.
-#[pyfunction]
-pub fn cell_weight(
-    weighting: &str,
-    level: u8,
-    deepest: u8,
-    inner_force: f64,
-    base: f64,
-    exponent: f64,
-) -> PyResult<f64> {
-    let parameters = WeightingParameters { base, exponent };
-    Ok(weight(self::weighting(weighting)?, &parameters, level, deepest, inner_force))
-}
 
 #[pyclass(module = "springform._core")]
 pub struct StressSeeking {

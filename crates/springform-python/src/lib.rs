@@ -17,11 +17,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<topology::BaseMesh>()?;
     module.add_class::<topology::Forest>()?;
     module.add_class::<mechanics::Setting>()?;
+    module.add_class::<mechanics::Net>()?;
     module.add_class::<mechanics::ImplicitEuler>()?;
     module.add_class::<evolution::Evolution>()?;
     module.add_class::<evolution::StressSeeking>()?;
     module.add_function(wrap_pyfunction!(mechanics::solve, module)?)?;
     module.add_function(wrap_pyfunction!(mechanics::residuals, module)?)?;
-    module.add_function(wrap_pyfunction!(evolution::cell_weight, module)?)?;
     Ok(())
 }

@@ -1,18 +1,19 @@
 //! Settings, bare networks and solvers for Python.
 
-use crate::convert::{groups, or_nan, refusal, rows};
+use crate::convert::{GroupArrays, groups, refusal, rows};
 use crate::topology::{BaseMesh, Forest};
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springform_evolution::phenotype;
 use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status, implicit_euler};
-use springform_mechanics::measures::{Measures, apertures};
+use springform_mechanics::measures::{Measures, apertures, inner_forces};
 use springform_mechanics::network::{Network, SpringLaw};
 use springform_mechanics::vector::Vector;
 use springform_topology::cell_type::Catalogue;
-use springform_topology::edit::Edit;
+use springform_topology::edit::{Edit, EditError};
+use springform_topology::expression::Expression;
 use springform_topology::filters::Method;
 use springform_topology::forest::{self, Content, NodePair, Override};
 use springform_topology::node_key::NodeKey;
@@ -141,72 +142,24 @@ impl Setting {
         Ok(self.lines(&Edit::invert_all(&self.edits(&edits)?)))
     }
 
-    /// The edits as they are written canonically.
-    fn canonical(&self, edits: Vec<String>) -> PyResult<Vec<String>> {
-        Ok(self.lines(&self.edits(&edits)?))
-    }
-
     /// Base vertices' drawn positions, (v, 3) m.
-    fn drawn<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, numpy::PyArray2<f64>>> {
+    fn drawn<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         rows(py, self.setting.embedding.base_positions().to_vec())
     }
 
-    /// The network of a closed forest, before it is solved.
-    fn grow<'py>(&self, py: Python<'py>, forest: &Forest) -> PyResult<Bound<'py, PyDict>> {
+    /// The net of a closed forest: what it consists of, and its network's arrays by name.
+    fn grow<'py>(slf: Bound<'py, Self>, forest: &Forest) -> PyResult<(Net, Bound<'py, PyDict>)> {
+        let (py, setting) = (slf.py(), &slf.get().setting);
         let (expression, network) =
-            py.detach(|| self.setting.grow(&forest.forest)).map_err(|error| refusal("forest", error))?;
-        let result = PyDict::new(py);
-        result.set_item("positions", rows(py, network.positions.into_owned())?)?;
-        result.set_item("springs", rows(py, network.springs.into_owned())?)?;
-        result.set_item("fixed", PyArray1::from_vec(py, network.fixed.into_owned()))?;
-        result.set_item("stiffness", PyArray1::from_vec(py, network.stiffness.into_owned()))?;
-        result.set_item("rest_length", PyArray1::from_vec(py, network.rest_length.into_owned()))?;
-        result.set_item("loads", rows(py, network.loads.into_owned())?)?;
-        let nodes: Vec<String> = expression.nodes.iter().map(ToString::to_string).collect();
-        result.set_item("nodes", nodes)?;
-        result.set_item("anchors", PyArray1::from_slice(py, &expression.anchors))?;
-        let cells = &expression.cells;
-        let addresses: Vec<String> = cells.iter().map(|cell| cell.place.to_string()).collect();
-        result.set_item("cells", addresses)?;
-        let squares = cells.iter().map(|cell| {
-            let place = cell.place;
-            [place.face, u32::from(place.level), place.i, place.j]
-        });
-        result.set_item("cell_squares", rows(py, squares.collect())?)?;
-        let types = cells.iter().map(|cell| self.setting.catalogue.word(cell.content.kind));
-        result.set_item("cell_types", types.collect::<Vec<_>>())?;
-        result.set_item("cell_springs", groups(py, &expression.cell_springs))?;
-        result.set_item("spring_cells", groups(py, &expression.spring_cells))?;
-        result.set_item("cell_boundaries", groups(py, &expression.cell_boundaries))?;
-        let ring = expression.springs.iter().map(|spring| spring.ring);
-        result.set_item("ring", PyArray1::from_iter(py, ring))?;
-        Ok(result)
-    }
-
-    /// Measures and apertures of a closed forest at given positions.
-    fn measure<'py>(
-        &self,
-        py: Python<'py>,
-        forest: &Forest,
-        positions: PyReadonlyArray2<'py, f64>,
-        forces: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let positions = vectors("positions", &positions)?;
-        let forces = values("forces", &forces)?;
-        let (expression, network) =
-            self.setting.grow(&forest.forest).map_err(|error| refusal("forest", error))?;
-        if positions.len() != network.positions.len() || forces.len() != network.springs.len() {
-            return Err(refusal("positions", "these are results of another net"));
-        }
-        let measures = Measures::new(&expression, &network, positions, forces);
-        let result = measures_dict(py, &measures)?;
-        let openings = apertures(&self.setting.mesh, &expression, positions);
-        let openings: Vec<_> = openings
-            .into_iter()
-            .map(|one| (one.part, one.side.name(), one.perimeter, one.area, one.normal))
-            .collect();
-        result.set_item("apertures", openings)?;
-        Ok(result)
+            py.detach(|| setting.grow(&forest.forest)).map_err(|error| refusal("forest", error))?;
+        let arrays = PyDict::new(py);
+        arrays.set_item("positions", rows(py, network.positions.into_owned())?)?;
+        arrays.set_item("springs", rows(py, network.springs.into_owned())?)?;
+        arrays.set_item("fixed", PyArray1::from_vec(py, network.fixed.into_owned()))?;
+        arrays.set_item("stiffness", PyArray1::from_vec(py, network.stiffness.into_owned()))?;
+        arrays.set_item("rest_length", PyArray1::from_vec(py, network.rest_length.into_owned()))?;
+        arrays.set_item("loads", rows(py, network.loads.into_owned())?)?;
+        Ok((Net { expression, setting: slf.unbind() }, arrays))
     }
 
     /// Expressed cells that share an edge with the expressed cell at an address.
@@ -231,12 +184,116 @@ impl Setting {
     }
 }
 
+/// Nodes, springs and cells of a grown net.
+#[pyclass(frozen, module = "springform._core")]
+pub struct Net {
+    expression: Expression,
+    setting: Py<Setting>,
+}
+
+#[pymethods]
+impl Net {
+    /// Key of every node.
+    #[getter]
+    fn nodes(&self) -> Vec<String> {
+        self.expression.nodes.iter().map(ToString::to_string).collect()
+    }
+
+    /// Node of every anchor.
+    #[getter]
+    fn anchors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.expression.anchors)
+    }
+
+    /// Which springs lie along a free ring or rim.
+    #[getter]
+    fn ring<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_iter(py, self.expression.springs.iter().map(|spring| spring.ring))
+    }
+
+    /// Addresses of the expressed cells.
+    #[getter]
+    fn cells(&self) -> Vec<String> {
+        self.expression.cells.iter().map(|cell| cell.place.to_string()).collect()
+    }
+
+    /// Face, level, column and row of every expressed cell.
+    #[getter]
+    fn cell_squares<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let square = |place: Place| [place.face, u32::from(place.level), place.i, place.j];
+        rows(py, self.expression.cells.iter().map(|cell| square(cell.place)).collect())
+    }
+
+    /// Types of the expressed cells, as expressed.
+    #[getter]
+    fn cell_types(&self) -> Vec<String> {
+        let catalogue = &self.setting.get().setting.catalogue;
+        self.expression.cells.iter().map(|cell| catalogue.word(cell.content.kind)).collect()
+    }
+
+    #[getter]
+    fn cell_springs<'py>(&self, py: Python<'py>) -> GroupArrays<'py> {
+        groups(py, &self.expression.cell_springs)
+    }
+
+    #[getter]
+    fn spring_cells<'py>(&self, py: Python<'py>) -> GroupArrays<'py> {
+        groups(py, &self.expression.spring_cells)
+    }
+
+    #[getter]
+    fn cell_boundaries<'py>(&self, py: Python<'py>) -> GroupArrays<'py> {
+        groups(py, &self.expression.cell_boundaries)
+    }
+
+    /// Sum of spring forces of every expressed cell, N.
+    fn inner_forces<'py>(
+        &self,
+        py: Python<'py>,
+        forces: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let forces = values("forces", &forces)?;
+        if forces.len() != self.expression.springs.len() {
+            return Err(refusal("forces", "these are results of another net"));
+        }
+        Ok(PyArray1::from_vec(py, inner_forces(&self.expression, forces)))
+    }
+
+    /// Measures and apertures of the net's network at given positions and forces.
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        network: NetworkArrays<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        forces: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let network = network.network()?;
+        let (positions, forces) = (vectors("positions", &positions)?, values("forces", &forces)?);
+        let expression = &self.expression;
+        if positions.len() != expression.nodes.len() || forces.len() != expression.springs.len() {
+            return Err(refusal("positions", "these are results of another net"));
+        }
+        let mesh = &self.setting.get().setting.mesh;
+        let (measures, openings) = py.detach(|| {
+            let measures = Measures::new(expression, &network, positions, forces);
+            (measures, apertures(mesh, expression, positions))
+        });
+        let result = measures_dict(py, &measures)?;
+        let openings: Vec<_> = openings
+            .into_iter()
+            .map(|one| (one.part, one.side.name(), one.perimeter, one.area, one.normal))
+            .collect();
+        result.set_item("apertures", openings)?;
+        Ok(result)
+    }
+}
+
 fn subdivide_to(
     forest: &mut forest::Forest,
     place: Place,
     level: u8,
     content: Content,
-) -> Result<(), springform_topology::edit::EditError> {
+) -> Result<(), EditError> {
     if place.level == level {
         return Ok(());
     }
@@ -339,7 +396,7 @@ pub fn solve<'py>(
 pub fn residuals<'py>(
     py: Python<'py>,
     network: NetworkArrays<'py>,
-) -> PyResult<Bound<'py, numpy::PyArray2<f64>>> {
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let network = network.network()?;
     rows(py, equilibrium::residuals(&network, &network.positions))
 }
@@ -358,7 +415,7 @@ fn equilibrium_dict(py: Python<'_>, equilibrium: Equilibrium) -> PyResult<Bound<
     };
     result.set_item("positions", rows(py, equilibrium.positions)?)?;
     result.set_item("forces", PyArray1::from_vec(py, equilibrium.forces))?;
-    result.set_item("residual", or_nan(Some(equilibrium.residual)))?;
+    result.set_item("residual", equilibrium.residual)?;
     result.set_item("converged", equilibrium.status == Status::Converged)?;
     result.set_item("iterations", equilibrium.iterations)?;
     result.set_item("reason", reason)?;

@@ -12,7 +12,10 @@ use springform_topology::notation::write_cell;
 use springform_topology::{base_mesh, notation};
 use std::collections::BTreeMap;
 
+/// (part, side, first vertex, number of edges).
 type ArcTuple = (usize, String, u32, u32);
+
+type MapArrays<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<i32>>);
 
 #[pyclass(frozen, module = "springform._core")]
 pub struct BaseMesh {
@@ -76,10 +79,6 @@ impl BaseMesh {
         rows(py, self.mesh.edges().to_vec())
     }
 
-    fn faces_at_edge(&self, edge: u32) -> Vec<u32> {
-        self.mesh.faces_at_edge(edge).iter().map(|side| side.face).collect()
-    }
-
     fn border_vertex(&self, part: &str, name: &str, index: usize) -> PyResult<Option<u32>> {
         Ok(self.mesh.border_vertex(part, side(name)?, index))
     }
@@ -93,16 +92,13 @@ impl BaseMesh {
 
     /// Unrolled map: part of every face, and its corners as (f, 8) half columns and half rows.
     #[getter]
-    fn map<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<i32>>)> {
+    fn map<'py>(&self, py: Python<'py>) -> PyResult<MapArrays<'py>> {
         let map = self.mesh.map();
-        let corners: Vec<[i32; 8]> = map
-            .iter()
-            .map(|place| std::array::from_fn(|at| {
-                let corner = place.corners[at / 2];
-                if at % 2 == 0 { corner.0 } else { corner.1 }
-            }))
-            .collect();
-        Ok((PyArray1::from_vec(py, map.iter().map(|place| place.part).collect()), rows(py, corners)?))
+        let flat = |corners: [(i32, i32); 4]| -> [i32; 8] {
+            std::array::from_fn(|at| [corners[at / 2].0, corners[at / 2].1][at % 2])
+        };
+        let parts = map.iter().map(|place| place.part).collect();
+        Ok((PyArray1::from_vec(py, parts), rows(py, map.iter().map(|place| flat(place.corners)).collect())?))
     }
 }
 

@@ -241,7 +241,12 @@ impl<'a> Growth<'a> {
         }
         growth.apply_overrides(forest);
         growth.owned.sort_unstable();
-        growth.owned.dedup_by_key(|spring| (spring.nodes, spring.cell));
+        // A cell may give a spring twice, by its perimeter along a ring and by name: it stays a ring spring.
+        growth.owned.dedup_by(|again, first| {
+            let same = (again.nodes, again.cell) == (first.nodes, first.cell);
+            first.ring |= same && again.ring;
+            same
+        });
         growth.pairs = growth.owned.iter().map(|spring| spring.nodes).collect();
         growth.pairs.dedup();
         growth

@@ -41,7 +41,7 @@ def place_labels(
     for point, target, text in zip(points, targets, texts, strict=True):
         outward = target - middle
         heading = np.arctan2(outward[1], outward[0]) if np.any(outward) else np.pi / 2
-        half = np.array([0.31 * size * len(text), 0.55 * size])
+        half = np.array([0.28 * size * len(text), 0.55 * size])
         near = around[np.all(np.abs(around - target) < 2 * half + gap + 8, axis=1)]
         best, best_cost = np.zeros(2), np.inf
         for reach in (gap, 1.8 * gap, 3.0 * gap):
@@ -52,11 +52,12 @@ def place_labels(
                 cost = 0.6 * abs(turn) + 0.12 * reach
                 cost += 0.35 * np.sum(np.all(np.abs(near - middle_of_text) < half + 0.5, axis=1))
                 cost += 200.0 * sum(
-                    bool(np.all(np.abs(box[0] - middle_of_text) < half + box[1]))
-                    for box in taken
+                    bool(np.all(np.abs(box[0] - middle_of_text) < half + box[1])) for box in taken
                 )
                 cost += 200.0 * np.sum(np.all(np.abs(targets - middle_of_text) < half + 2, axis=1))
-                outside = np.any(middle_of_text - half < low) or np.any(middle_of_text + half > high)
+                outside = np.any(middle_of_text - half < low) or np.any(
+                    middle_of_text + half > high
+                )
                 cost += _MISSING * bool(outside)
                 if cost < best_cost:
                     best, best_cost = middle_of_text, cost

@@ -8,13 +8,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from ..design import Design
 from ..network import Equilibrium
 from . import style
 from .labels import place_labels
-from .view import AXONOMETRIC, Floats, View, broadest
+from .view import AXONOMETRIC, Floats, View, along_springs, axonometric, broadest
 
 _WIDTH, _LARGEST_HEIGHT = 11.0, 9.0
 _MARGIN, _HEAD, _FOOT, _BORDER = 0.4, 0.85, 1.05, 0.42
@@ -52,8 +51,9 @@ def draw_net(
 
 def net_figure(design: Design, equilibrium: Equilibrium) -> Figure:
     """Return two views of a net at one scale, with one colour bar, one scale bar and a title."""
-    views = (AXONOMETRIC, broadest(equilibrium.positions))
-    spans = [_span(view.project(equilibrium.positions)) for view in views]
+    positions = equilibrium.positions
+    views = (axonometric(positions, design.network().springs), broadest(positions))
+    spans = [_span(view.project(positions)) for view in views]
     inner = _WIDTH - 2 * _MARGIN - 4 * _BORDER
     highest = max(span[1] for span in spans)
     # Inches for a metre, so that both views fit side by side.
@@ -74,10 +74,10 @@ def net_figure(design: Design, equilibrium: Equilibrium) -> Figure:
         middle, size = span[2], np.array([width, height - _HEAD - _FOOT]) / scale
         axes.set_xlim(middle[0] - size[0] / 2, middle[0] + size[0] / 2)
         axes.set_ylim(middle[1] - size[1] / 2, middle[1] + size[1] / 2)
-        colours = draw_net(axes, design, equilibrium, view=view, norm=norm)
+        draw_net(axes, design, equilibrium, view=view, norm=norm)
         _add_caption(axes, view)
         left += width
-    _add_force_bar(figure, colours)
+    _add_force_bar(figure, norm)
     _add_scale_bar(figure, scale)
     return figure
 
@@ -107,23 +107,26 @@ def _draw_springs(axes: Axes, ends: Floats, forces: Floats, norm: Normalize) -> 
     near = (depth - depth.min()) / max(float(np.ptp(depth)), 1e-12)
     order = np.argsort(depth, kind="stable")
     shade = np.ma.filled(norm(np.nan_to_num(forces)), 0.0)
-    weight = float(np.clip((700 / max(count, 1)) ** 0.3, 0.5, 1.25))
-    widths = weight * (0.55 + 1.0 * shade) * (0.7 + 0.45 * near)
+    weight = float(np.clip((700 / max(count, 1)) ** 0.27, 0.58, 1.25))
+    widths = weight * (0.65 + 1.0 * shade) * (0.75 + 0.4 * near)
     colours = style.FORCE_COLOURS(shade)
     # Far springs recede a little into the paper.
-    colours[:, :3] += (1 - colours[:, :3]) * (0.32 * (1 - near))[:, None]
+    colours[:, :3] += (1 - colours[:, :3]) * (0.25 * (1 - near))[:, None]
 
     # Each spring comes after a white casing that cuts what lies behind it. The casing stays clear
-    # of the ends, where it would cut the springs that meet there.
+    # of the ends, where it would cut the springs that meet there, and short springs have little.
     flat = ends[:, :, :2]
-    casing = flat.mean(axis=1, keepdims=True) + 0.7 * (flat - flat.mean(axis=1, keepdims=True))
+    lengths = np.hypot(*(flat[:, 1] - flat[:, 0]).T)
+    typical = max(float(np.max(np.ptp(flat.reshape(-1, 2), axis=0))) / 25, 1e-12)
+    gaps = 1.0 * weight * np.minimum(lengths / typical, 1.0)
+    casing = flat.mean(axis=1, keepdims=True) + 0.56 * (flat - flat.mean(axis=1, keepdims=True))
     lines = np.stack([casing, flat], axis=1)[order].reshape(2 * count, 2, 2)
     white = np.ones_like(colours)
     axes.add_collection(
         LineCollection(
             list(lines),
             colors=np.stack([white, colours], axis=1)[order].reshape(2 * count, 4),
-            linewidths=np.stack([widths + 1.3 * weight, widths], axis=1)[order].reshape(-1),
+            linewidths=np.stack([widths + gaps, widths], axis=1)[order].reshape(-1),
             capstyle="butt",
             zorder=2,
         ),
@@ -162,16 +165,9 @@ def _draw_anchors(axes: Axes, design: Design, seen: Floats, *, names: bool) -> N
         axes,
         points[[group[0] for group in groups], :2],
         [", ".join(design.anchor_names[number] for number in group) for group in groups],
-        crowd=_crowd(seen, design.network().springs),
+        crowd=along_springs(seen, design.network().springs)[:, :2],
         size=style.SMALL,
     )
-
-
-def _crowd(seen: Floats, springs: NDArray[np.uint32]) -> Floats:
-    ends = seen[springs.astype(np.intp), :2]
-    shares = np.linspace(0, 1, 5)[:, None, None]
-    crowd: Floats = (ends[:, 0] + shares * (ends[:, 1] - ends[:, 0])).reshape(-1, 2)
-    return crowd
 
 
 def _add_caption(axes: Axes, view: View) -> None:
@@ -182,10 +178,10 @@ def _add_caption(axes: Axes, view: View) -> None:
     place = axes.get_position()
     centre = np.array([(place.x0 + place.x1) / 2 * across, place.y0 * up - 0.08])
     directions = view.axes()[:2].T
-    length, wide = 0.17, 0.62
+    length, wide = 0.17, 0.55
     origin = centre + np.array([-wide, 0.0])
     figure.text(
-        (centre[0] - wide + 0.42) / across,
+        (centre[0] - wide + 0.3) / across,
         centre[1] / up,
         view.name,
         fontsize=style.TEXT,
@@ -203,8 +199,10 @@ def _add_caption(axes: Axes, view: View) -> None:
         if np.hypot(*tip) < 0.3 * length:
             continue
         triad.plot(*np.stack([-middle, tip - middle], axis=1), color=style.GREY, linewidth=0.7)
+        name_at = tip * (1 + 0.07 / np.hypot(*tip)) - middle
         triad.text(
-            *(tip * (1 + 0.07 / np.hypot(*tip)) - middle),
+            name_at[0],
+            name_at[1],
             name,
             fontsize=5.5,
             color=style.GREY,
@@ -213,13 +211,13 @@ def _add_caption(axes: Axes, view: View) -> None:
         )
 
 
-def _add_force_bar(figure: Figure, colours: ScalarMappable) -> None:
-    norm = colours.norm
-    low, high = float(norm.vmin or 0.0), float(norm.vmax or 0.0)
+def _add_force_bar(figure: Figure, norm: Normalize) -> None:
+    colours = ScalarMappable(norm, style.FORCE_COLOURS)
     log = isinstance(norm, LogNorm)
     bar_axes = style.add_axes(figure, _MARGIN, 0.5, 4.2, 0.09)
     bar = figure.colorbar(colours, cax=bar_axes, orientation="horizontal")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
+    low, high = style.ends(norm)
     bar.minorticks_off()
     style.set_ticks(bar_axes.xaxis, low, high, log=log)
     bar_axes.tick_params(length=2.5, pad=2)
@@ -240,6 +238,14 @@ def _add_scale_bar(figure: Figure, scale: float) -> None:
     bar.set_axis_off()
     bar.set_xlim(0, 2)
     bar.set_ylim(0, 1)
-    bar.barh([0.5, 0.5], [1, 1], left=[0, 1], height=0.55, color=[style.INK, "white"],
-             edgecolor=style.INK, linewidth=0.7, clip_on=False)
+    bar.barh(
+        [0.5, 0.5],
+        [1, 1],
+        left=[0, 1],
+        height=0.55,
+        color=[style.INK, "white"],
+        edgecolor=style.INK,
+        linewidth=0.7,
+        clip_on=False,
+    )
     bar.set_title(f"{style.plain(length)} m", loc="right", fontsize=style.TEXT, pad=4)

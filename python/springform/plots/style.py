@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import io
 import math
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
+from matplotlib.colors import Colormap, LinearSegmentedColormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
@@ -48,11 +49,18 @@ def _part(name: str, first: float, last: float) -> Colormap:
     return ListedColormap(shades, name=f"springform_{name}")
 
 
-FORCE_COLOURS = _part("plasma_r", 0.16, 1.0)
+FORCE_COLOURS = _part("plasma_r", 0.26, 1.0)
 """Perceptually uniform and colour-blind-safe; on white paper the strongest springs are darkest."""
 
-LEVEL_COLOURS = _part("viridis_r", 0.0, 0.92)
-"""Levels of cells and generations: uniform and safe too, and not to be taken for forces."""
+LEVEL_COLOURS: Colormap = LinearSegmentedColormap.from_list(
+    "springform_levels", ["#dde5ed", "#a3bdd6", "#5f8bb8", "#2d5a8c", "#0d2646"]
+)
+"""Levels of cells: even steps from light to dark, not to be taken for forces."""
+
+GENERATION_COLOURS: Colormap = ListedColormap(
+    LEVEL_COLOURS(np.linspace(0.25, 1.0, 256)), name="springform_generations"
+)
+"""Generations, the same way, but dark enough for a single point."""
 
 _SETTINGS = {
     "font.family": ["DejaVu Sans"],
@@ -90,7 +98,8 @@ def styled() -> Iterator[None]:
         for key, value in matplotlib.rcParamsDefault.items()
         if not key.startswith(("backend", "interactive", "toolbar", "webagg", "date."))
     }
-    with matplotlib.rc_context({**settings, **_SETTINGS}):
+    # Typed loosely: the stubs list every setting by name.
+    with matplotlib.rc_context(cast(Any, {**settings, **_SETTINGS})):
         yield
 
 
@@ -114,9 +123,7 @@ def add_title(figure: Figure, name: str, facts: str, *, margin: float = 0.4) -> 
     figure.text(
         left, 1 - 0.3 / up, name, fontsize=TITLE, fontweight="bold", va="top", parse_math=False
     )
-    figure.text(
-        left, 1 - 0.57 / up, facts, fontsize=TEXT, color=GREY, va="top", parse_math=False
-    )
+    figure.text(left, 1 - 0.57 / up, facts, fontsize=TEXT, color=GREY, va="top", parse_math=False)
 
 
 def save(figure: Figure, folder: Path, name: str) -> Path:
@@ -134,7 +141,7 @@ def save(figure: Figure, folder: Path, name: str) -> Path:
     return path
 
 
-def make_folder(folder: str | Path) -> Path:
+def make_folder(folder: str | os.PathLike[str]) -> Path:
     """Make a folder for pictures, if need be, and return it. Raises `WriteError`: it can't be."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
@@ -157,6 +164,12 @@ def force_norm(forces: NDArray[np.float64]) -> Normalize:
     if not low < high:
         low, high = low - 0.5 * (abs(low) or 1.0), high + 0.5 * (abs(high) or 1.0)
     return Normalize(low, high, clip=True)
+
+
+def ends(norm: Normalize) -> tuple[float, float]:
+    """Return the smallest and largest value on a scale that `force_norm` made."""
+    # The stubs allow for scales without ends.
+    return float(cast(float, norm.vmin)), float(cast(float, norm.vmax))
 
 
 def plain(value: float, _position: int | None = None) -> str:

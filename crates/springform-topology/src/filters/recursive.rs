@@ -21,25 +21,30 @@ pub fn close(mesh: &BaseMesh, forest: &mut Forest) -> Result<Vec<Edit>, EditErro
     let mut edits = Vec::new();
     let mut frontier = Vec::new();
     forest.visit_expressed(|_, place| frontier.push(place));
+    // Levels 0 and 1 are balanced with anything above them.
+    frontier.retain(|place| place.level >= 2);
     while !frontier.is_empty() {
         let mut coarse = BTreeSet::new();
-        for &place in frontier.iter().filter(|place| place.level >= 2) {
+        // A cell with too coarse a neighbour stays: one refinement may not be enough.
+        frontier.retain(|&place| {
+            let mut balanced = true;
             for side in 0..4 {
                 across(mesh, place, side, |neighbour, _| {
                     if let Some((_, level)) = forest.expressed_over(neighbour)
                         && level + 1 < place.level
                     {
                         coarse.insert(neighbour.ancestor(level));
+                        balanced = false;
                     }
                 });
             }
-        }
-        frontier.clear();
+            !balanced
+        });
         for place in coarse {
             let before = edits.len();
             refine(forest, place, &mut edits);
             Edit::apply_all(&edits[before..], forest)?;
-            frontier.extend((0..4).map(|k| place.child(k)));
+            frontier.extend((0..4).map(|k| place.child(k)).filter(|place| place.level >= 2));
         }
     }
     Ok(edits)

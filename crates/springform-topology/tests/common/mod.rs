@@ -16,6 +16,8 @@ use springform_topology::filters::{Method, recursive};
 use springform_topology::forest::{CellIndex, Content, Forest, NodePair, Override};
 use springform_topology::framework::{Arc, Framework, Grid, Join, Part, Shape, Side};
 use springform_topology::node_key::{NodeKey, UNITS};
+use springform_topology::notation::write_cell;
+use std::fmt;
 
 /// The year of the paper; `PROPTEST_RNG_SEED` explores elsewhere.
 const SEED: u64 = 2015;
@@ -33,10 +35,17 @@ pub fn cases(count: u32) -> Config {
 }
 
 /// Raw random numbers from which tests build what fits; where they end, every further one is zero.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Dice {
     numbers: Vec<u32>,
     next: usize,
+}
+
+/// On one line, however a failure is printed.
+impl fmt::Debug for Dice {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:?}", self.numbers)
+    }
 }
 
 impl Dice {
@@ -80,13 +89,31 @@ pub fn edit_dice(count: usize) -> impl Strategy<Value = Vec<Dice>> {
 }
 
 /// A base mesh with all that a forest is expressed with.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Design {
     pub mesh: BaseMesh,
     pub catalogue: Catalogue,
     pub method: Method,
     pub anchors: Vec<u32>,
     pub forest: Forest,
+}
+
+/// Short enough to read when a property fails.
+impl fmt::Debug for Design {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Design { mesh, catalogue, method, anchors, forest } = self;
+        writeln!(formatter, "{} on {:?}, anchors {anchors:?}", method.name(), mesh.faces())?;
+        for number in Catalogue::BUILT_IN..=Catalogue::BUILT_IN + 1 {
+            writeln!(formatter, "{:?}", catalogue.get(CellTypeId(number)))?;
+        }
+        for face in 0..forest.top_level() {
+            writeln!(formatter, "{face} = {}", write_cell(forest, forest.top(face), catalogue))?;
+        }
+        for (pair, what) in forest.overrides() {
+            writeln!(formatter, "{} {} {what:?}", pair.keys()[0], pair.keys()[1])?;
+        }
+        Ok(())
+    }
 }
 
 /// Designs of all methods on undivided frameworks and meshes.
@@ -161,16 +188,13 @@ impl Design {
 
     fn random_override(&self, dice: &mut Dice) -> Edit {
         let cells = stored_cells(&self.forest);
-        let mut named = |place: Place| {
-            let half = dice.below(9);
-            self.key(place, half % 3, half / 3)
-        };
-        let (_, first) = cells[0];
-        let (_, last) = cells[cells.len() - 1];
-        let (a, b) = (named(last), named(if last.level % 2 == 0 { last } else { first }));
-        // Two different corners stand in where both are the same.
-        let pair = NodePair::new(a, b).or_else(|| NodePair::new(self.key(last, 0, 0), self.key(last, 2, 0)));
-        let pair = pair.expect("corners of a cell differ");
+        let (_, first) = dice.pick(&cells);
+        let second = if dice.percent(60) { first } else { dice.pick(&cells).1 };
+        let (a, b) = (dice.below(9), dice.below(9));
+        // Two opposite corners stand in where both points are the same.
+        let pair = NodePair::new(self.key(first, a % 3, a / 3), self.key(second, b % 3, b / 3))
+            .or_else(|| NodePair::new(self.key(first, 0, 0), self.key(first, 2, 2)))
+            .expect("opposite corners of a cell differ");
         match self.forest.overrides().get(&pair) {
             Some(&what) => Edit::Override { pair, what, set: false },
             None => Edit::Override { pair, what: dice.pick(&[Override::Cut, Override::Added]), set: true },

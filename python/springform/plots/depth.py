@@ -1,0 +1,310 @@
+"""The depth map: every cell where it lies in the unrolled framework, coloured by level."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from ..design import Design
+from . import style
+from .view import Floats, broadest
+
+_LARGEST_WIDTH, _LARGEST_HEIGHT, _LEAST_WIDTH, _MARGIN = 11.0, 8.5, 6.0, 0.4
+_HEAD, _FOOT, _NAME, _BESIDE = 0.95, 0.9, 0.3, 0.45
+_NULL = "0"
+
+_POINTS = {
+    **{f"c{k}": point for k, point in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])},
+    **{f"m{k}": point for k, point in enumerate([(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)])},
+    "x": (0.5, 0.5),
+}
+_FAN = tuple(f"x-{point}" for point in _POINTS if point != "x")
+_BUILT_IN = {
+    "0": (),
+    "1": (),
+    "2": ("x-c0", "x-c1", "x-c2", "x-c3"),
+    "3": ("c0-c2",),
+    "4": ("m0-m2",),
+    "5": ("m0-m1", "m1-m2", "m2-m3", "m3-m0"),
+    "6": _FAN,
+}
+_NAMES = {
+    "0": "0 null",
+    "1": "1 quad",
+    "2": "2 braced",
+    "3": "3 diagonal",
+    "4": "4 strip",
+    "5": "5 inscribed",
+    "6": "6 dynamic",
+}
+
+
+@dataclass(frozen=True)
+class _Panel:
+    """A part of the framework: its name, and which cells and corners of faces belong to it."""
+
+    name: str
+    part: int
+    cells: NDArray[np.intp]
+    low: Floats
+    size: Floats
+
+
+def depth_figure(design: Design) -> Figure:
+    """Return the map of a design's expressed cells, part by part.
+
+    A cylinder or sheet is unrolled: around or across to the right, along upwards. A mesh from a
+    file is seen along the axis that shows most of it, as drawn. Lines inside a cell are the
+    springs of its type, turned as the cell is.
+    """
+    corners, parts = _layout(design)
+    faces = design.mesh.faces.astype(np.intp)
+    squares = design.cells.squares.astype(np.intp)
+    quads = _bilinear(corners[squares[:, 0]], squares, np.array([(0, 0), (1, 0), (1, 1), (0, 1)]))
+    panels = _panels(design, quads, parts[squares[:, 0]])
+    columns, unit = _arrangement(panels)
+    rows = [panels[at : at + columns] for at in range(0, len(panels), columns)]
+    tall = [max(panel.size[1] for panel in row) * unit + _NAME for row in rows]
+    height = _HEAD + sum(tall) + _BESIDE * (len(rows) - 1) + _FOOT
+    widest = max((float(panel.size[0]) for panel in panels), default=1.0) * unit
+    column_width = widest + _BESIDE
+    width = max(_LEAST_WIDTH, 2 * _MARGIN + columns * column_width - _BESIDE)
+    figure = style.new_figure(width, height)
+    levels = int(squares[:, 1].max(initial=0)) + 1
+    # Few levels do not need the darkest shades, which would hide the lines inside cells.
+    shades = style.LEVEL_COLOURS(np.arange(levels) / max(levels - 1, 4))
+    style.add_title(figure, design.name, _facts(design, levels), margin=_MARGIN)
+
+    top = height - _HEAD
+    for row, row_height in zip(rows, tall, strict=True):
+        for column, panel in enumerate(row):
+            wide, high = panel.size * unit
+            left = _MARGIN + column * column_width
+            figure.text(
+                left / width, (top - 0.05) / height, panel.name, va="top", fontsize=style.TEXT,
+                fontweight="bold", parse_math=False,
+            )  # fmt: skip
+            axes = style.add_axes(figure, left, top - _NAME - high, wide, high)
+            axes.set_xlim(panel.low[0], panel.low[0] + panel.size[0])
+            axes.set_ylim(panel.low[1], panel.low[1] + panel.size[1])
+            axes.set_axis_off()
+            _draw_cells(axes, design, quads, panel, shades, unit)
+            _draw_anchors(axes, design, corners[parts == panel.part], faces[parts == panel.part])
+        top -= row_height + _BESIDE
+    _add_legend(figure, design, shades)
+    return figure
+
+
+def _layout(design: Design) -> tuple[Floats, NDArray[np.intp]]:
+    """Return the corners of every face on paper (f, 4, 2), and the face's part."""
+    parts, corners = design.mesh.map
+    if len(parts):
+        # Half columns and half rows of a dia-grid are alike on paper.
+        return corners.reshape(-1, 4, 2) / 2.0, parts.astype(np.intp)
+    drawn = design.setting.drawn()
+    seen = broadest(drawn).project(drawn)[:, :2]
+    faces = design.mesh.faces.astype(np.intp)
+    side = np.median(np.hypot(*(seen[faces[:, 1]] - seen[faces[:, 0]]).T)) if len(faces) else 1.0
+    return seen[faces] / max(float(side), 1e-12), np.zeros(len(faces), dtype=np.intp)
+
+
+def _bilinear(corners: Floats, squares: NDArray[np.intp], points: NDArray[np.float64]) -> Floats:
+    """Return points (p, 2) of the unit square inside every cell (c, p, 2), on paper."""
+    side = 0.5 ** squares[:, 1, None]
+    u = (squares[:, 2, None] + points[None, :, 0]) * side
+    v = (squares[:, 3, None] + points[None, :, 1]) * side
+    return _inside(corners, np.stack([u, v], axis=2))
+
+
+def _inside(corners: Floats, places: Floats) -> Floats:
+    """Return places (c, p, 2) of the unit square inside quads (c, 4, 2)."""
+    u, v = places[..., 0], places[..., 1]
+    weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=-1)
+    inside: Floats = (weights[..., None] * corners[:, None]).sum(axis=2)
+    return inside
+
+
+def _panels(design: Design, quads: Floats, parts: NDArray[np.intp]) -> list[_Panel]:
+    framework = design.file.framework
+    names = [cylinder.name for cylinder in framework.cylinders]
+    names += [sheet.name for sheet in framework.sheets]
+    panels = []
+    for number, name in enumerate(names or ["mesh"]):
+        cells = np.flatnonzero(parts == number)
+        if len(cells):
+            points = quads[cells].reshape(-1, 2)
+            panels.append(_Panel(name, number, cells, points.min(axis=0), np.ptp(points, axis=0)))
+    return panels
+
+
+def _arrangement(panels: list[_Panel]) -> tuple[int, float]:
+    """Return a number of columns that shows the parts large, and inches for a unit."""
+    best = (1, 0.0)
+    for columns in range(1, len(panels) + 1):
+        rows = [panels[at : at + columns] for at in range(0, len(panels), columns)]
+        widest = max(float(panel.size[0]) for panel in panels)
+        tall = sum(max(float(panel.size[1]) for panel in row) for row in rows)
+        wide = (_LARGEST_WIDTH - 2 * _MARGIN - _BESIDE * (columns - 1)) / columns
+        high = _LARGEST_HEIGHT - _HEAD - _FOOT - len(rows) * _NAME - _BESIDE * (len(rows) - 1)
+        unit = min(wide / max(widest, 1e-9), max(high, 1.0) / max(tall, 1e-9))
+        # Twice the columns on half the paper are worth a little size.
+        if unit > best[1] * 0.85:
+            best = (columns, max(unit, 1e-9))
+    return best
+
+
+def _facts(design: Design, levels: int) -> str:
+    words = [
+        f"{len(design.cells.addresses):,} cells by level of subdivision, deepest {levels - 1}",
+        "as drawn"
+        if design.file.framework.mesh
+        else "unrolled: around to the right, along upwards",
+    ]
+    return "  ·  ".join(words)
+
+
+def _draw_cells(
+    axes: Axes, design: Design, quads: Floats, panel: _Panel, shades: Floats, unit: float
+) -> None:
+    squares, types = design.cells.squares.astype(np.intp), design.cells.types
+    levels = squares[panel.cells, 1]
+    empty = np.array([types[cell] == _NULL for cell in panel.cells])
+    fills = shades[levels].copy()
+    fills[empty] = 1.0
+    edges = np.ones_like(fills)
+    edges[empty] = to_rgba(style.PALE)
+    sides = np.hypot(*(quads[panel.cells, 1] - quads[panel.cells, 0]).T) * unit * 72
+    fine = np.clip(sides / 14, 0.15, 0.8)
+    axes.add_collection(
+        PolyCollection(
+            list(quads[panel.cells]),
+            facecolors=fills,
+            edgecolors=edges,
+            linewidths=fine,
+            joinstyle="round",
+            clip_on=False,
+        ),
+        autolim=False,
+    )
+    segments, colours, widths = [], [], []
+    words = _words(design, panel.cells)
+    for word in sorted(set(words)):
+        pattern = _pattern(design, word)
+        chosen = np.array([word == other for other in words])
+        if not len(pattern) or not chosen.any():
+            continue
+        places = np.broadcast_to(
+            pattern.reshape(1, -1, 2), (int(chosen.sum()), pattern.size // 2, 2)
+        )
+        lines = _inside(quads[panel.cells[chosen]], places).reshape(-1, 2, 2)
+        segments.append(lines)
+        # Dark lines on light shades and the other way round.
+        dark = shades[levels[chosen], :3].mean(axis=1) > 0.55
+        ink = np.where(dark[:, None], to_rgba(style.INK), to_rgba("white"))
+        colours.append(np.repeat(ink, len(pattern), axis=0))
+        widths.append(np.repeat(np.clip(sides[chosen] / 32, 0.15, 0.6), len(pattern)))
+    if segments:
+        axes.add_collection(
+            LineCollection(
+                list(np.concatenate(segments)),
+                colors=np.concatenate(colours),
+                linewidths=np.concatenate(widths),
+                capstyle="round",
+            ),
+            autolim=False,
+        )
+
+
+def _draw_anchors(axes: Axes, design: Design, corners: Floats, faces: NDArray[np.intp]) -> None:
+    """Mark the anchors where corners (f, 4, 2) of faces (f, 4) lie on them; name each once."""
+    points: list[Floats] = []
+    names: list[str] = []
+    for anchor, name in zip(design.anchors, design.anchor_names, strict=True):
+        key = design.nodes[anchor]
+        places = np.unique(corners[faces == int(key[1:])], axis=0)
+        points.extend(places)
+        # An anchor on the cut of a cylinder shows at both ends.
+        names.extend([name] * len(places))
+    if not points:
+        return
+    at = np.array(points)
+    axes.plot(
+        at[:, 0], at[:, 1], linestyle="none", marker="o", markersize=3.6, clip_on=False,
+        markerfacecolor="white", markeredgecolor=style.INK, markeredgewidth=0.8, zorder=5,
+        scalex=False, scaley=False,
+    )  # fmt: skip
+    middle = float(np.mean(axes.get_ylim()))
+    for (x, y), name in zip(at, names, strict=True):
+        upwards = y >= middle
+        axes.annotate(
+            name, (x, y), xytext=(0, 5 if upwards else -5), textcoords="offset points",
+            ha="center", va="bottom" if upwards else "top", fontsize=style.SMALL,
+            parse_math=False,
+        )  # fmt: skip
+
+
+def _words(design: Design, cells: NDArray[np.intp]) -> list[str]:
+    """Return type and turn of every cell as expressed, such as ``3@1``."""
+    forest, setting = design.closed.forest, design.setting
+    words = []
+    for cell in cells:
+        kind = design.cells.types[cell]
+        stored, _, _ = forest.cell(setting, design.cells.addresses[cell])
+        # A cell may be expressed as another type than it stores: then its turn has no meaning.
+        words.append(stored if stored.split("@")[0] == kind else kind)
+    return words
+
+
+def _pattern(design: Design, word: str) -> Floats:
+    """Return the springs (s, 2, 2) of a type and turn inside the unit square, a little shrunk."""
+    kind, _, turn = word.partition("@")
+    own = design.file.cell_types.get(kind)
+    springs: tuple[str, ...] = _BUILT_IN.get(kind, ())
+    if own is not None:
+        springs = (*own.springs, *(_FAN if own.fan else ()))
+    ends = [[_turned(point, int(turn or 0)) for point in spring.split("-")] for spring in springs]
+    return 0.5 + 0.76 * (np.array(ends, dtype=np.float64).reshape(-1, 2, 2) - 0.5)
+
+
+def _turned(point: str, turn: int) -> tuple[float, float]:
+    return _POINTS[point if point == "x" else f"{point[0]}{(int(point[1]) + turn) % 4}"]
+
+
+def _add_legend(figure: Figure, design: Design, shades: Floats) -> None:
+    """Name levels and types below the map, each with its swatch and its number of cells."""
+    across, _ = figure.get_size_inches()
+    axes = style.add_axes(figure, 0, 0, across, _FOOT)
+    axes.set_xlim(0, across)
+    axes.set_ylim(0, _FOOT)
+    axes.set_axis_off()
+    levels = Counter(int(level) for level in design.cells.squares[:, 1])
+    types = Counter(design.cells.types)
+    rows = [
+        ("level", [(str(at), n, shades[at], "") for at, n in sorted(levels.items())]),
+        ("type", [(_NAMES.get(k, k), n, to_rgba("white"), k) for k, n in sorted(types.items())]),
+    ]
+    side = 0.15
+    for line, (title, entries) in enumerate(rows):
+        left, bottom = _MARGIN, 0.5 - 0.27 * line
+        middle = bottom + side / 2
+        axes.text(left, middle, title, va="center_baseline", fontweight="bold")
+        left += 0.55
+        for name, count, fill, kind in entries:
+            edge = style.GREY if kind else "none"
+            corner = (left, bottom)
+            axes.add_patch(Rectangle(corner, side, side, facecolor=fill, edgecolor=edge, lw=0.5))
+            pattern = _pattern(design, kind) * side + np.array([left, bottom])
+            axes.add_collection(
+                LineCollection(list(pattern), colors=style.INK, linewidths=0.5), autolim=False
+            )
+            text = f"{name}  ({count:,})"
+            axes.text(left + side + 0.07, middle, text, va="center_baseline", parse_math=False)
+            left += side + 0.35 + 0.068 * len(text)
