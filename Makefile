@@ -20,7 +20,7 @@ DEMO := runs/demo
 # What a machine must have is checked before anything is built, and said in one line.
 ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   ifeq ($(shell command -v cargo),)
-    $(error springFORM needs Rust 1.85 or newer: install it so that `cargo` is found, then try again)
+    $(error springFORM needs Rust 1.88 or newer: install it so that `cargo` is found, then try again)
   endif
   # Looked up before .venv goes into PATH: an environment must not be made by its own Python.
   BASE_PYTHON := $(shell command -v $(PYTHON))
@@ -47,7 +47,7 @@ help: # list the commands
 .PHONY: demo
 demo: $(PACKAGE) # evolve the three-cylinder net and draw it
 	@rm -rf $(DEMO)
-	springform evolve three-cylinders --out $(DEMO) --population 100 --generations 80 --types 1,6 --seed 1
+	springform evolve three-cylinders --out $(DEMO) --seed 1 --population 300 --insertions 2 --until-springs 2000
 	springform plot $(DEMO) --out $(DEMO)/pictures
 	echo "The run is in $(DEMO), its pictures are in $(DEMO)/pictures."
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.sparse
 import scipy.sparse.linalg
+
 import springform as sf
 
 BENCHMARKS = sorted((Path(__file__).parent / "benchmarks").glob("*.json"))

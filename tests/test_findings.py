@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+
 import springform as sf
 
 SEEDS = range(1, 11)

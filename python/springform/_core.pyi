@@ -94,17 +94,6 @@ class BaseMesh:
 class Forest:
     """The genotype: quadtrees of cells, and overrides. It does not change."""
 
-    def notation(
-        self, setting: Setting, default: str
-    ) -> tuple[dict[int, str], list[str], list[str]]:
-        """Return the top-level cells that differ from `default`, in notation; added; cut."""
-
-    def edited(self, setting: Setting, edits: list[str]) -> Forest:
-        """Return a forest changed by edits."""
-
-    def cell(self, setting: Setting, address: str) -> tuple[str, bool, bool]:
-        """Return (type and turn, switched on, owns children) of the cell at an address."""
-
     @property
     def fingerprint(self) -> int:
         """A number that equal forests share, below 2^64."""
@@ -207,6 +196,17 @@ class Setting:
         self, kind: str, level: int, cells: dict[int, str], added: list[str], cut: list[str]
     ) -> Forest:
         """Make a forest: cells of a type subdivided to a level, but for those in notation."""
+
+    def notation(
+        self, forest: Forest, default: str
+    ) -> tuple[dict[int, str], list[str], list[str]]:
+        """Return the top-level cells that differ from `default`, in notation; added; cut."""
+
+    def edited(self, forest: Forest, edits: list[str]) -> Forest:
+        """Return a forest changed by edits."""
+
+    def cell(self, forest: Forest, address: str) -> tuple[str, bool, bool]:
+        """Return (type and turn, switched on, owns children) of the cell at an address."""
 
     def closed(self, forest: Forest) -> tuple[Forest, list[str]]:
         """Return a closed copy of a forest, and the edits that closing took."""

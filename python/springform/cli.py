@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import math
 import os
+import shlex
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,12 +28,13 @@ from rich.text import Text
 
 from . import _core, results, scenes
 from .design import Design, load, save
-from .errors import InputError, SpringformError
+from .errors import InputError, SpringformError, printable
 from .evolution import OnGeneration, evolve, resume, seek
 from .evolution import Progress as GenerationProgress
 from .exchange.obj import design_from_obj
 from .files import WriteError, explain
 from .network import TOLERANCE
+from .parameters import Parameters
 from .run import Run, is_run, open_run
 
 INTERRUPTED = 130
@@ -40,14 +43,14 @@ BAD_INPUT = 2
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     rich_markup_mode="markdown",
     pretty_exceptions_enable=False,
     help="Design tensile nets whose topology differs from place to place.",
     epilog="Start with `springform init three-cylinders`, then `springform solve` and "
     "`springform evolve`.",
 )
-_errors = Console(stderr=True, highlight=False, soft_wrap=True)
+# Without emoji, or line 100 of a file would be shown as one.
+_errors = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
 
 DesignArgument = Annotated[
     str, typer.Argument(metavar="DESIGN", help="A design file (.toml, .json) or a scene's name.")
@@ -73,7 +76,8 @@ Threads = Annotated[
 def main() -> None:
     """Run the command line; bad input gives one line on standard error and exit code 2."""
     try:
-        code = app(standalone_mode=False) or 0
+        code = app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
+        sys.stdout.flush()
     except typer.TyperException as error:
         code = _refuse(error.format_message())
     except SpringformError as error:
@@ -84,12 +88,13 @@ def main() -> None:
     except typer.Exit as request:
         code = request.exit_code
     except (typer.Abort, KeyboardInterrupt):
+        _say("springform: interrupted")
         code = INTERRUPTED
     sys.exit(code)
 
 
 def _refuse(message: str) -> int:
-    _errors.print(f"springform: {message}", markup=False)
+    _say(f"springform: {printable(message)}")
     return BAD_INPUT
 
 
@@ -106,11 +111,12 @@ def init(
         typer.Option(help="With an .obj file: numbers of the anchored vertices, from 0: 0,5,9."),
     ] = None,
     force: Annotated[bool, typer.Option(help="Replace a file that exists.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Write a packaged scene, or a quad mesh, as a design file; without a name, list the scenes."""
     if name is None:
-        for scene in scenes.names():
-            print(f"{scene:<28} {scenes.load_scene(scene).description}".rstrip())
+        listed = {scene: scenes.load_scene(scene).description for scene in scenes.names()}
+        _print_report({"scenes": listed} if as_json else listed, as_json)
         return
     from_mesh = name.lower().endswith(".obj")
     if anchors is not None and not from_mesh:
@@ -122,7 +128,7 @@ def init(
     design = Design(file, source=name)
     design.network()
     save(design, target)
-    _say(f"wrote {target}")
+    _print_report({"written": str(target)}, as_json)
 
 
 def _numbers(text: str | None) -> list[int] | None:
@@ -175,7 +181,7 @@ def solve_command(
         results.write(net, equilibrium, measures, out)
     _print_report(report, as_json)
     if not equilibrium.converged:
-        _errors.print(f"springform: no equilibrium: {equilibrium.reason}", markup=False)
+        _say(f"springform: no equilibrium: {equilibrium.reason}")
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -240,6 +246,12 @@ def evolve_command(
         str | None,
         typer.Option(help="unweighted, linear, exponential, deep or stress [exponential]."),
     ] = None,
+    weight_base: Annotated[
+        float | None, typer.Option(help="Base of the exponential weighting [4].")
+    ] = None,
+    weight_exponent: Annotated[
+        float | None, typer.Option(help="Exponent on linear, deep and stress weights [1].")
+    ] = None,
     insertions: Annotated[
         str | None, typer.Option(help="Cells subdivided in each mutant: 3 or 5% [3].")
     ] = None,
@@ -276,8 +288,10 @@ def evolve_command(
         "population": population,
         "generations": generations,
         "seed": seed,
-        "types": types.split(",") if types is not None else None,
+        "types": [kind.strip() for kind in types.split(",")] if types is not None else None,
         "weighting": weighting,
+        "weight_base": weight_base,
+        "weight_exponent": weight_exponent,
         "insertions": insertions,
         "switches": switches,
         "toggles": toggles,
@@ -297,7 +311,8 @@ def evolve_command(
     def run(on_generation: OnGeneration) -> Run:
         return evolve(start, out=out, threads=threads, on_generation=on_generation, **parameters)
 
-    _report_run(_drive(run, out, generations or 300, 0), began, as_json)
+    total = Parameters().generations if generations is None else generations
+    _report_run(_drive(run, out, total, 0), began, as_json)
 
 
 @app.command("resume", epilog="Example: `springform resume runs/a`")
@@ -314,7 +329,7 @@ def resume_command(
     def go_on(on_generation: OnGeneration) -> Run:
         return resume(before, generations=generations, threads=threads, on_generation=on_generation)
 
-    total = generations or before.parameters.generations
+    total = before.parameters.generations if generations is None else generations
     _report_run(_drive(go_on, run, total, before.generations), began, as_json)
 
 
@@ -331,11 +346,11 @@ def show(
     """Rebuild any individual that a run ever evaluated, as a design."""
     found = open_run(run)
     design = found.individual(generation, individual)
-    save(design, out)
     row = (generation - 1) * found.parameters.population + individual
     table = found.table
     report = {name: table[name][row].item() for name in ("springs", "force_differential", "suf")}
-    _print_report({name: _defined(value) for name, value in report.items()}, as_json)
+    save(design, out)
+    _print_report(report, as_json)
 
 
 @app.command("plot", epilog="Example: `springform plot runs/a --out pictures`")
@@ -399,8 +414,9 @@ class _Pace(ProgressColumn):
         return Text("" if speed is None else f"{speed:.1f}/s")
 
 
-def _progress(what: str) -> Progress:
-    return Progress(
+@contextmanager
+def _progress(what: str) -> Iterator[Progress]:
+    columns = (
         TextColumn(what),
         BarColumn(),
         MofNCompleteColumn(),
@@ -408,8 +424,14 @@ def _progress(what: str) -> Progress:
         TextColumn("{task.fields[springs]} springs"),
         TextColumn("differential {task.fields[differential]}"),
         TimeRemainingColumn(),
-        console=_errors,
     )
+    with Progress(*columns, console=_errors) as progress:
+        try:
+            yield progress
+        except BaseException:
+            # What went wrong is said on one line, without a bar beside it.
+            progress.live.transient = True
+            raise
 
 
 def _update(progress: Progress, task: Any, done: int, springs: int, value: float | None) -> None:
@@ -418,6 +440,19 @@ def _update(progress: Progress, task: Any, done: int, springs: int, value: float
 
 
 def _drive(run: Callable[[OnGeneration], Run], folder: Path, total: int, done: int) -> Run:
+    go_on = f"go on with: springform resume {shlex.quote(str(folder))}"
+    try:
+        return _with_progress(run, total, done)
+    except KeyboardInterrupt:
+        _say(f"springform: interrupted; {go_on if is_run(folder) else 'the run had not begun'}")
+        raise typer.Exit(INTERRUPTED) from None
+    except WriteError as error:
+        if not is_run(folder):
+            raise
+        raise WriteError(f"{error.message}; then {go_on}", file=error.file) from None
+
+
+def _with_progress(run: Callable[[OnGeneration], Run], total: int, done: int) -> Run:
     with _progress("generations") as progress:
         task = progress.add_task(
             "generations", total=total, completed=done, springs="–", differential="–"
@@ -426,17 +461,7 @@ def _drive(run: Callable[[OnGeneration], Run], folder: Path, total: int, done: i
         def show(now: GenerationProgress) -> None:
             _update(progress, task, now.generation, now.springs, now.force_differential)
 
-        try:
-            return run(show)
-        except KeyboardInterrupt:
-            progress.stop()
-            _say(f"interrupted; go on with: springform resume {folder}")
-            raise typer.Exit(INTERRUPTED) from None
-        except WriteError as error:
-            if not is_run(folder):
-                raise
-            message = f"{error.message}; then go on with: springform resume {folder}"
-            raise WriteError(message, file=error.file) from None
+        return run(show)
 
 
 def _report_run(finished: Run, began: float, as_json: bool) -> None:
@@ -454,20 +479,24 @@ def _report_run(finished: Run, began: float, as_json: bool) -> None:
     )
 
 
-def _defined(value: float) -> float | None:
-    return None if math.isnan(value) else value
-
-
 def _say(message: str) -> None:
     _errors.print(message, markup=False)
 
 
 def _print_report(report: dict[str, Any], as_json: bool) -> None:
     if as_json:
-        print(json.dumps(report))
+        print(json.dumps(_plain(report)))
         return
+    width = max(20, *map(len, report))
     for name, value in report.items():
-        print(f"{name.replace('_', ' '):<20} {_words(value)}")
+        print(f"{name.replace('_', ' '):<{width}} {_words(value)}")
+
+
+def _plain(value: Any) -> Any:
+    """Numbers that JSON does not know become null."""
+    if isinstance(value, dict):
+        return {name: _plain(part) for name, part in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _words(value: Any) -> str:
@@ -477,7 +506,7 @@ def _words(value: Any) -> str:
         case bool():
             return "yes" if value else "no"
         case float():
-            return f"{value:.6g}"
+            return "undefined" if math.isnan(value) else f"{value:.6g}"
         case dict():
             return ", ".join(
                 f"{_words(part)} {name.replace('_', ' ')}" for name, part in value.items()

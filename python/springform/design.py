@@ -235,7 +235,7 @@ class Design:
 
         Raises `DesignError`: an edit does not fit.
         """
-        return self._with(self._build(lambda: self.forest.edited(self.setting, list(edits))))
+        return self._with(self._build(lambda: self.setting.edited(self.forest, list(edits))))
 
     def inverse(self, edits: Iterable[str]) -> list[str]:
         """Return the edits that undo `edits`. Raises `DesignError`: not edits of this framework."""
@@ -263,7 +263,7 @@ class Design:
         default = str(section.type)
         for _ in range(framework.level):
             default = f"{section.type}({' '.join([default] * 4)})"
-        cells, added, cut = self.forest.notation(self.setting, default)
+        cells, added, cut = self.setting.notation(self.forest, default)
         forest = ForestSection(type=section.type, cells=cells)
         overrides = Overrides(added=tuple(added), cut=tuple(cut))
         return self.file.model_copy(update={"forest": forest, "overrides": overrides})

@@ -153,7 +153,7 @@ class Run:
     def digest(self) -> str:
         """Return a hash of the final genotype and of the whole table of measures."""
         state = hashlib.sha256()
-        cells, added, cut = self.best.forest.notation(self.design.setting, "")
+        cells, added, cut = self.design.setting.notation(self.best.forest, "")
         state.update(json.dumps([cells, added, cut]).encode())
         for name, column in self.table.items():
             state.update(name.encode())

@@ -42,7 +42,13 @@ impl Reason {
 
 impl Ending {
     /// The condition that holds after `generation`, for the parent now and its spring utilization factor.
-    pub fn reached(&self, generation: u32, start: Standing, now: Standing, suf: Option<f64>) -> Option<Reason> {
+    pub fn reached(
+        &self,
+        generation: u32,
+        start: Standing,
+        now: Standing,
+        suf: Option<f64>,
+    ) -> Option<Reason> {
         let crossed = |limit: f64| match (start.differential, now.differential) {
             (Some(start), Some(now)) if start > limit => now <= limit,
             (_, Some(now)) => now >= limit,

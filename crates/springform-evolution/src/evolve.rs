@@ -117,7 +117,8 @@ impl Evolution {
         threads: usize,
     ) -> Result<Evolution, PhenotypeError> {
         setting.close(&mut forest)?;
-        let (generation, start, suf) = resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
+        let (generation, start, suf) =
+            resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
         let parent = Parent::new(&setting, forest, strategy, suf)?;
         let start = start.unwrap_or_else(|| Standing::from(&parent.measures));
         let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -157,7 +158,10 @@ impl Evolution {
     pub fn advance(&mut self) -> Result<Generation, PhenotypeError> {
         let number = self.generation + 1;
         let individuals: Vec<Individual> = self.threads.install(|| {
-            (0..self.parameters.population).into_par_iter().map(|index| self.individual(number, index)).collect()
+            (0..self.parameters.population)
+                .into_par_iter()
+                .map(|index| self.individual(number, index))
+                .collect()
         });
         let winner = self.choose(&individuals);
         if let Some(index) = winner {

@@ -96,8 +96,11 @@ impl Criterion {
     /// The fittest of a generation, the lowest index among equals; `None` if all are undefined.
     pub fn choose(&self, generation: &[(Score, u32)]) -> Option<usize> {
         let band = self.niche.and_then(|width| {
-            let mut springs: Vec<u32> =
-                generation.iter().filter(|(score, _)| score.is_defined()).map(|&(_, springs)| springs).collect();
+            let mut springs: Vec<u32> = generation
+                .iter()
+                .filter(|(score, _)| score.is_defined())
+                .map(|&(_, springs)| springs)
+                .collect();
             springs.sort_unstable();
             let median = *springs.get(springs.len() / 2)?;
             Some(median.saturating_sub(width)..=median.saturating_add(width))

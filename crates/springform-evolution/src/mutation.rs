@@ -56,9 +56,8 @@ const WEIGHTING_CHANCE: f64 = 0.1;
 impl Strategy {
     /// A mutated strategy: each amount shrinks, stays or grows; insertions stay at one cell or more.
     pub fn mutated(&self, draws: &mut Draws) -> Strategy {
-        let mut vary = |amount: Amount| {
-            amount.times([1.0 / STEP_FACTOR, 1.0, STEP_FACTOR][draws.below(3) as usize])
-        };
+        let mut vary =
+            |amount: Amount| amount.times([1.0 / STEP_FACTOR, 1.0, STEP_FACTOR][draws.below(3) as usize]);
         let insertions = match vary(self.insertions) {
             Amount::Count(count) => Amount::Count(count.max(1.0)),
             share => share,
@@ -151,7 +150,12 @@ impl Palette<'_> {
 /// The edits of one mutant: insert, switch type, toggle.
 ///
 /// Newborn cells are immune to the later steps, and their ancestors to toggling, so that they express themselves.
-pub fn mutate(candidates: &Candidates, strategy: &Strategy, palette: &Palette<'_>, draws: &mut Draws) -> Vec<Edit> {
+pub fn mutate(
+    candidates: &Candidates,
+    strategy: &Strategy,
+    palette: &Palette<'_>,
+    draws: &mut Draws,
+) -> Vec<Edit> {
     let drawn = |list: &[Candidate], amount: Amount, immune: &[Place], draws: &mut Draws| {
         let weights: Vec<f64> = list
             .iter()

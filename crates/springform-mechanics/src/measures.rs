@@ -63,7 +63,12 @@ pub struct Aperture {
 
 impl Measures {
     /// Measures a net whose springs have these forces at these positions.
-    pub fn new(expression: &Expression, network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> Measures {
+    pub fn new(
+        expression: &Expression,
+        network: &Network<'_>,
+        positions: &[Vector],
+        forces: &[f64],
+    ) -> Measures {
         let lengths = network.lengths(positions);
         let count = forces.len().max(1) as f64;
         let force_min = forces.iter().copied().fold(f64::INFINITY, f64::min);

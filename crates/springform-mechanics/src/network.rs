@@ -69,7 +69,11 @@ pub enum NetworkError {
 impl Network<'_> {
     /// The network of an expression under the default law; anchors are fixed at their positions, free nodes
     /// start at their drawn positions.
-    pub fn from_expression(expression: &Expression, embedding: &Embedding, law: SpringLaw) -> Network<'static> {
+    pub fn from_expression(
+        expression: &Expression,
+        embedding: &Embedding,
+        law: SpringLaw,
+    ) -> Network<'static> {
         let mut positions: Vec<Vector> =
             expression.nodes.iter().map(|&node| embedding.drawn_position(node)).collect();
         let mut fixed = vec![false; positions.len()];
@@ -132,7 +136,8 @@ impl Network<'_> {
 
     /// Length of every spring [m].
     pub fn lengths(&self, positions: &[Vector]) -> Vec<f64> {
-        let spring_length = |&[a, b]: &[u32; 2]| length(subtract(positions[b as usize], positions[a as usize]));
+        let spring_length =
+            |&[a, b]: &[u32; 2]| length(subtract(positions[b as usize], positions[a as usize]));
         self.springs.iter().map(spring_length).collect()
     }
 

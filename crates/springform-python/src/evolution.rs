@@ -1,7 +1,8 @@
 //! Runs and stress-seeking for Python.
 
 use crate::convert::{or_nan, refusal};
-use crate::mechanics::{Setting, columns, measures_dict};
+use crate::measures::{columns, measures_dict};
+use crate::setting::Setting;
 use crate::topology::Forest;
 use numpy::PyArray1;
 use pyo3::prelude::*;

@@ -5,7 +5,9 @@
 
 mod convert;
 mod evolution;
-mod mechanics;
+mod measures;
+mod network;
+mod setting;
 mod topology;
 
 use pyo3::prelude::*;
@@ -16,12 +18,12 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("CoreError", module.py().get_type::<convert::CoreError>())?;
     module.add_class::<topology::BaseMesh>()?;
     module.add_class::<topology::Forest>()?;
-    module.add_class::<mechanics::Setting>()?;
-    module.add_class::<mechanics::Net>()?;
-    module.add_class::<mechanics::ImplicitEuler>()?;
+    module.add_class::<setting::Setting>()?;
+    module.add_class::<setting::Net>()?;
+    module.add_class::<network::ImplicitEuler>()?;
     module.add_class::<evolution::Evolution>()?;
     module.add_class::<evolution::StressSeeking>()?;
-    module.add_function(wrap_pyfunction!(mechanics::solve, module)?)?;
-    module.add_function(wrap_pyfunction!(mechanics::residuals, module)?)?;
+    module.add_function(wrap_pyfunction!(network::solve, module)?)?;
+    module.add_function(wrap_pyfunction!(network::residuals, module)?)?;
     Ok(())
 }

@@ -1,16 +1,11 @@
 //! Base meshes and forests for Python.
 
 use crate::convert::{refusal, rows};
-use crate::mechanics::Setting;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use springform_topology::address::Place;
-use springform_topology::edit::Edit;
+use springform_topology::base_mesh;
 use springform_topology::forest;
 use springform_topology::framework::{Arc, Framework, Grid, Join, Part, Shape, Side};
-use springform_topology::notation::write_cell;
-use springform_topology::{base_mesh, notation};
-use std::collections::BTreeMap;
 
 /// (part, side, first vertex, number of edges).
 type ArcTuple = (usize, String, u32, u32);
@@ -109,43 +104,6 @@ pub struct Forest {
 
 #[pymethods]
 impl Forest {
-    /// Notation of the top-level cells that differ from the default, and overrides (added, cut).
-    fn notation(
-        &self,
-        setting: &Setting,
-        default: &str,
-    ) -> (BTreeMap<u32, String>, Vec<String>, Vec<String>) {
-        let cells = (0..self.forest.top_level())
-            .map(|face| (face, write_cell(&self.forest, self.forest.top(face), &setting.setting.catalogue)))
-            .filter(|(_, text)| text != default)
-            .collect();
-        let (mut added, mut cut) = (Vec::new(), Vec::new());
-        for (pair, what) in self.forest.overrides() {
-            let [a, b] = pair.keys();
-            let list = if *what == forest::Override::Added { &mut added } else { &mut cut };
-            list.push(format!("{a} {b}"));
-        }
-        (cells, added, cut)
-    }
-
-    /// A forest changed by edits, each a line of text.
-    fn edited(&self, setting: &Setting, edits: Vec<String>) -> PyResult<Forest> {
-        let mut forest = self.forest.clone();
-        Edit::apply_all(&setting.edits(&edits)?, &mut forest).map_err(|error| refusal("edit", error))?;
-        Ok(Forest { forest })
-    }
-
-    /// Type and turn, switch, and whether children are stored, of the cell at an address.
-    fn cell(&self, setting: &Setting, address: &str) -> PyResult<(String, bool, bool)> {
-        let place = Place::parse(address).map_err(|error| refusal("cell", error))?;
-        let cell = self
-            .forest
-            .find(place)
-            .ok_or_else(|| refusal("cell", format!("cell {address} does not exist")))?;
-        let content = notation::write_content(self.forest.content(cell), &setting.setting.catalogue);
-        Ok((content, self.forest.is_on(cell), self.forest.children(cell).is_some()))
-    }
-
     #[getter]
     fn fingerprint(&self) -> u64 {
         self.forest.fingerprint()

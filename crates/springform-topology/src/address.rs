@@ -74,7 +74,7 @@ impl Place {
     pub fn parse(text: &str) -> Result<Place, AddressError> {
         let malformed = || AddressError::Malformed(text.to_owned());
         let mut words = text.split('.');
-        let face = words.next().and_then(|word| word.parse().ok()).ok_or_else(malformed)?;
+        let face = words.next().and_then(whole_number).ok_or_else(malformed)?;
         let mut place = Place::top(face);
         for word in words {
             let child = match word {
@@ -109,4 +109,11 @@ pub enum AddressError {
     /// Too many children.
     #[error("'{0}' is deeper than level {MAX_LEVEL}, the deepest possible")]
     TooDeep(String),
+}
+
+/// A whole number in the one way in which it is written, so that no cell or node has two names: no sign, no
+/// leading zero.
+pub(crate) fn whole_number(text: &str) -> Option<u32> {
+    let plain = text == "0" || text.starts_with(|first: char| matches!(first, '1'..='9'));
+    if plain { text.parse().ok() } else { None }
 }

@@ -8,6 +8,7 @@
 //!   c0 ── m0 ── c1
 //! ```
 
+use crate::address::whole_number;
 use thiserror::Error;
 
 /// Number of a cell type in a [`Catalogue`].
@@ -160,7 +161,7 @@ impl Catalogue {
         if !word || self.types.iter().any(|known| known.name == name) {
             return Err(CellTypeError::Name(name.to_owned()));
         }
-        if self.types.len() >= 256 - usize::from(Self::BUILT_IN) {
+        if self.types.len() > usize::from(u8::MAX) {
             return Err(CellTypeError::TooMany);
         }
         let springs = springs
@@ -178,10 +179,10 @@ impl Catalogue {
 
     /// Finds a type by number (built-in) or name.
     pub fn find(&self, word: &str) -> Option<CellTypeId> {
-        let index = match word.parse::<u8>() {
-            Ok(number) if number < Self::BUILT_IN => usize::from(number),
-            Ok(_) => return None,
-            Err(_) => self.types.iter().position(|known| known.name == word)?,
+        let index = match whole_number(word) {
+            Some(number) if number < u32::from(Self::BUILT_IN) => number as usize,
+            Some(_) => return None,
+            None => self.types.iter().position(|known| known.name == word)?,
         };
         Some(CellTypeId(index as u8))
     }

@@ -83,7 +83,9 @@ pub enum EditError {
     #[error("the spring {0} {1} is already overridden, or is not as the edit says")]
     Override(NodeKey, NodeKey),
     /// A text with other words.
-    #[error("'{0}' is not an edit; write such as '12.0 subdivide 1 1 1 1', '12 retype 1 3@1', '12 off', 'v1 v2 cut'")]
+    #[error(
+        "'{0}' is not an edit; write such as '12.0 subdivide 1 1 1 1', '12 retype 1 3@1', '12 off', 'v1 v2 cut'"
+    )]
     Malformed(String),
     /// A text with a bad address.
     #[error(transparent)]
@@ -219,10 +221,8 @@ impl Edit {
         let malformed = || EditError::Malformed(text.to_owned());
         let words: Vec<&str> = text.split_whitespace().collect();
         let contents = |words: &[&str]| -> Result<[Content; 4], EditError> {
-            let contents = words
-                .iter()
-                .map(|word| parse_content(word, catalogue))
-                .collect::<Result<Vec<_>, _>>()?;
+            let contents =
+                words.iter().map(|word| parse_content(word, catalogue)).collect::<Result<Vec<_>, _>>()?;
             contents.try_into().map_err(|_| malformed())
         };
         match words.as_slice() {

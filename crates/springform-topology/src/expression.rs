@@ -7,9 +7,9 @@
 use crate::address::Place;
 use crate::base_mesh::{BaseMesh, Groups};
 use crate::cell_type::{Catalogue, Point};
+use crate::filters::Method;
 use crate::filters::continuity::carrying;
 use crate::filters::recursive::{Support, support_springs};
-use crate::filters::Method;
 use crate::forest::{CellIndex, Content, Forest, Override};
 use crate::node_key::{NodeKey, RESOLUTION};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -131,9 +131,7 @@ impl Expression {
 
     /// Cells that have a node on their boundary, ascending.
     pub fn cells_at(&self, node: u32) -> Vec<u32> {
-        (0..self.cells.len() as u32)
-            .filter(|&cell| self.cell_boundaries.of(cell).contains(&node))
-            .collect()
+        (0..self.cells.len() as u32).filter(|&cell| self.cell_boundaries.of(cell).contains(&node)).collect()
     }
 
     /// Every index is in range, everything is ascending, no spring occurs twice.
@@ -149,12 +147,7 @@ impl Expression {
 }
 
 /// Cells at loose anchors become plain quads; false if all of them were.
-fn restore_quads(
-    mesh: &BaseMesh,
-    cells: &mut [ExpressedCell],
-    anchors: &[u32],
-    loose: &[usize],
-) -> bool {
+fn restore_quads(mesh: &BaseMesh, cells: &mut [ExpressedCell], anchors: &[u32], loose: &[usize]) -> bool {
     let keys: Vec<NodeKey> = loose.iter().map(|&anchor| NodeKey::vertex(anchors[anchor])).collect();
     let mut changed = false;
     for cell in cells.iter_mut().filter(|cell| cell.content != Content::QUAD) {
@@ -392,7 +385,10 @@ impl<'a> Growth<'a> {
         }
         let boundaries = self.boundaries.iter().map(|&(cell, node)| (cell, numbers[node as usize]));
         Expression {
-            anchors: anchors.iter().map(|&vertex| numbers[self.numbers[&NodeKey::vertex(vertex)] as usize]).collect(),
+            anchors: anchors
+                .iter()
+                .map(|&vertex| numbers[self.numbers[&NodeKey::vertex(vertex)] as usize])
+                .collect(),
             cell_springs: Groups::collect(cells.len(), owners.iter().map(|&(spring, cell)| (cell, spring))),
             spring_cells: Groups::collect(springs.len(), owners.iter().copied()),
             cell_boundaries: Groups::collect(cells.len(), boundaries.filter(|&(_, node)| node != DROPPED)),
@@ -418,9 +414,8 @@ fn put_nodes(
         keys.extend(points.map(|point| square.key(mesh, point.turned(cell.content.turn))));
     }
     if method == Method::Recursive {
-        let four_hanging = |square: &Square| {
-            (0..4).all(|side| keys.contains(&square.key(mesh, Point::Middle(side))))
-        };
+        let four_hanging =
+            |square: &Square| (0..4).all(|side| keys.contains(&square.key(mesh, Point::Middle(side))));
         let centres: Vec<NodeKey> = cells
             .iter()
             .map(|cell| Square::of(cell.place))

@@ -9,6 +9,7 @@
 //! Parameters count units of 2^−[`RESOLUTION`], from the lower vertex of the edge, along side 0 (i) and side 1 (j).
 
 use crate::MAX_LEVEL;
+use crate::address::whole_number;
 use crate::base_mesh::BaseMesh;
 use std::fmt;
 use thiserror::Error;
@@ -112,7 +113,7 @@ impl NodeKey {
     pub fn parse(text: &str, mesh: &BaseMesh) -> Result<NodeKey, NodeKeyError> {
         let malformed = || NodeKeyError::Malformed(text.to_owned());
         let missing = || NodeKeyError::Missing(text.to_owned());
-        let number = |word: &str| word.parse::<u32>().map_err(|_| malformed());
+        let number = |word: &str| whole_number(word).ok_or_else(malformed);
         let (tag, rest) = text.split_at_checked(1).ok_or_else(malformed)?;
         match (tag, rest.split_once(':')) {
             ("v", None) => {
@@ -163,7 +164,7 @@ pub enum NodeKeyError {
 
 fn fraction(text: &str) -> Option<u32> {
     let (above, below) = text.split_once('/')?;
-    let (above, below) = (above.parse::<u32>().ok()?, below.parse::<u32>().ok()?);
+    let (above, below) = (whole_number(above)?, whole_number(below)?);
     let proper = below.is_power_of_two() && below <= UNITS && 0 < above && above < below;
     proper.then(|| above * (UNITS / below))
 }

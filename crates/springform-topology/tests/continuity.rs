@@ -54,7 +54,13 @@ fn walk(graph: &Graph, node: u32, visited: &mut [bool], path: &mut Vec<usize>, f
         }
     }
     for (spring, &[a, b]) in graph.springs.iter().enumerate() {
-        let far = if a == node { b } else if b == node { a } else { continue };
+        let far = if a == node {
+            b
+        } else if b == node {
+            a
+        } else {
+            continue;
+        };
         if !visited[far as usize] {
             visited[far as usize] = true;
             path.push(spring);
@@ -107,7 +113,19 @@ fn loose_ends_hung_loops_and_islands_go() {
     // 0 and 3 are anchors: a path 0-1-2-3, a loose end 1-4, a loop 2-5-6 hung on one node, an island 7-8-9,
     // a loop 3-10-11 hung on one anchor.
     let springs = [
-        [0, 1], [1, 2], [2, 3], [1, 4], [2, 5], [5, 6], [2, 6], [7, 8], [8, 9], [7, 9], [3, 10], [10, 11], [3, 11],
+        [0, 1],
+        [1, 2],
+        [2, 3],
+        [1, 4],
+        [2, 5],
+        [5, 6],
+        [2, 6],
+        [7, 8],
+        [8, 9],
+        [7, 9],
+        [3, 10],
+        [10, 11],
+        [3, 11],
     ];
     assert_eq!(kept(12, &springs, &[0, 3]), [0, 1, 2]);
 }

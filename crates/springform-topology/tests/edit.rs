@@ -201,9 +201,46 @@ proptest! {
 
 /// Pieces from which bad texts are made: words of the formats, near misses, and letters of several bytes.
 const PIECES: [&str; 40] = [
-    "0", "1", "12", "3", "4294967295", "99999999999999999999", ".", "..", ".0", ".3", ".4", " ", "  ", "\t", "\n", "(",
-    ")", "[", "]", "@", "@1", "@3", "@9", "v", "e", "f", ":", "/", ",", "1/2", "3/8", "1/2097152", "-", "subdivide",
-    "retype", "merge", "off", "cut", "é", "🕸",
+    "0",
+    "1",
+    "12",
+    "3",
+    "4294967295",
+    "99999999999999999999",
+    ".",
+    "..",
+    ".0",
+    ".3",
+    ".4",
+    " ",
+    "  ",
+    "\t",
+    "\n",
+    "(",
+    ")",
+    "[",
+    "]",
+    "@",
+    "@1",
+    "@3",
+    "@9",
+    "v",
+    "e",
+    "f",
+    ":",
+    "/",
+    ",",
+    "1/2",
+    "3/8",
+    "1/2097152",
+    "-",
+    "subdivide",
+    "retype",
+    "merge",
+    "off",
+    "cut",
+    "é",
+    "🕸",
 ];
 
 /// A well-formed text of one of the formats.
@@ -285,7 +322,9 @@ fn cells_reach_the_deepest_level_and_no_further() {
     let mut forest = Forest::new(1, Content::QUAD);
     let mut cell = Place::top(0);
     for _ in 0..MAX_LEVEL {
-        Edit::Subdivide { cell, children: [Content::QUAD; 4] }.apply(&mut forest).expect("above the deepest level");
+        Edit::Subdivide { cell, children: [Content::QUAD; 4] }
+            .apply(&mut forest)
+            .expect("above the deepest level");
         cell = cell.child(2);
     }
     let deeper = Edit::Subdivide { cell, children: [Content::QUAD; 4] };
@@ -311,9 +350,16 @@ fn notation_errors_name_the_column() {
         Err(NotationError::Expected { column, .. } | NotationError::UnknownType { column, .. }) => column,
         other => panic!("{text}: {other:?}"),
     };
-    for (text, expected) in
-        [("", 1), ("7", 1), ("1(1 1 1)", 8), ("1(1 1 1 1", 10), ("1(1 1 1 1 1)", 11), ("1@4", 3), ("1 1", 3), ("1(1 star 1 1)", 5)]
-    {
+    for (text, expected) in [
+        ("", 1),
+        ("7", 1),
+        ("1(1 1 1)", 8),
+        ("1(1 1 1 1", 10),
+        ("1(1 1 1 1 1)", 11),
+        ("1@4", 3),
+        ("1 1", 3),
+        ("1(1 star 1 1)", 5),
+    ] {
         assert_eq!(column(text), expected, "{text}");
     }
 }
@@ -324,7 +370,19 @@ fn keys_reach_one_level_below_the_deepest_cell() {
     let text = format!("f0:1/{UNITS},{}/{UNITS}", UNITS - 1);
     assert_eq!(UNITS, 1 << RESOLUTION);
     assert_eq!(NodeKey::parse(&text, &mesh).expect("a key").to_string(), text);
-    for bad in ["", "v", "v4", "e0:0/2", "e0:2/2", "e0:1/3", "e9:1/2", "f0:1/2", "f1:1/2,1/2", "f0:1/4194304,1/2", "x1"] {
+    for bad in [
+        "",
+        "v",
+        "v4",
+        "e0:0/2",
+        "e0:2/2",
+        "e0:1/3",
+        "e9:1/2",
+        "f0:1/2",
+        "f1:1/2,1/2",
+        "f0:1/4194304,1/2",
+        "x1",
+    ] {
         assert!(NodeKey::parse(bad, &mesh).is_err(), "{bad}");
     }
 }

@@ -326,6 +326,7 @@ fn supports_are_owned_by_the_coarse_cell() {
     for corner in ["v2", "v5"] {
         assert!(has_spring(&design, &expression, &middle, corner));
     }
-    let coarse = expression.cells.iter().position(|cell| cell.place == Place::top(1)).expect("the second cell");
+    let coarse =
+        expression.cells.iter().position(|cell| cell.place == Place::top(1)).expect("the second cell");
     assert_eq!(expression.cell_springs.of(coarse as u32).len(), 5 + 2);
 }

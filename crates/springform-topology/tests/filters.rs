@@ -41,7 +41,8 @@ fn subdivide_somewhere(design: &mut Design, dice: &mut Dice) {
 
 /// A row of plain quads, read from cell notation.
 fn strip(cells: &[&str]) -> (BaseMesh, Forest) {
-    let faces: Vec<[u32; 4]> = (0..cells.len() as u32).map(|k| [2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1]).collect();
+    let faces: Vec<[u32; 4]> =
+        (0..cells.len() as u32).map(|k| [2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1]).collect();
     let mesh = BaseMesh::from_faces(2 * cells.len() as u32 + 2, faces).expect("a row of quads");
     let mut forest = Forest::new(cells.len() as u32, Content::QUAD);
     for (face, text) in cells.iter().enumerate() {
@@ -214,7 +215,9 @@ fn one_subdivision_cascades() {
     let (mesh, mut forest) = strip(&["1(1(1(1(1(1 1 1 1) 1 1 1) 1 1 1) 1 1 1) 1 1 1)"]);
     assert_eq!(close(&mesh, &mut forest), Ok(vec![]));
     let start = Place::parse("0.0.0.0.0.1").expect("an address");
-    Edit::Subdivide { cell: start, children: [Content::QUAD; 4] }.apply(&mut forest).expect("an undivided cell");
+    Edit::Subdivide { cell: start, children: [Content::QUAD; 4] }
+        .apply(&mut forest)
+        .expect("an undivided cell");
     let edits = close(&mesh, &mut forest).expect("a valid forest closes");
     let lines: Vec<String> = edits.iter().map(|edit| edit.write(&Catalogue::default())).collect();
     let expected = ["0.0.0.0.1", "0.0.0.1", "0.0.1", "0.1"].map(|cell| format!("{cell} subdivide 1 1 1 1"));

@@ -15,36 +15,32 @@ from numpy.typing import NDArray
 
 from ..design import Design
 from . import style
+from .patterns import NULL, pattern, type_name, type_words
 from .view import Floats, broadest
 
 _LARGEST_WIDTH, _LARGEST_HEIGHT, _LEAST_WIDTH, _MARGIN = 11.0, 8.5, 6.0, 0.4
-_HEAD, _FOOT, _NAME, _BESIDE = 0.95, 0.9, 0.3, 0.45
-_NULL = "0"
+_HEAD, _FOOT, _NAME, _BESIDE = 0.9, 0.55, 0.45, 0.4
+_LINE, _SWATCH, _TITLE_WIDTH = 0.27, 0.15, 0.55
 
-_POINTS = {
-    **{f"c{k}": point for k, point in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])},
-    **{f"m{k}": point for k, point in enumerate([(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)])},
-    "x": (0.5, 0.5),
-}
-_FAN = tuple(f"x-{point}" for point in _POINTS if point != "x")
-_BUILT_IN = {
-    "0": (),
-    "1": (),
-    "2": ("x-c0", "x-c1", "x-c2", "x-c3"),
-    "3": ("c0-c2",),
-    "4": ("m0-m2",),
-    "5": ("m0-m1", "m1-m2", "m2-m3", "m3-m0"),
-    "6": _FAN,
-}
-_NAMES = {
-    "0": "0 null",
-    "1": "1 quad",
-    "2": "2 braced",
-    "3": "3 diagonal",
-    "4": "4 strip",
-    "5": "5 inscribed",
-    "6": "6 dynamic",
-}
+
+@dataclass(frozen=True)
+class _Entry:
+    """A swatch of the legend: what it stands for, how many cells there are, and how it looks."""
+
+    name: str
+    count: int
+    fill: Floats | tuple[float, float, float, float]
+    kind: str
+
+    @property
+    def text(self) -> str:
+        """What stands beside the swatch."""
+        return f"{self.name}  ({self.count:,})"
+
+    @property
+    def width(self) -> float:
+        """Room that swatch and text take [in]."""
+        return _SWATCH + 0.3 + 0.063 * len(self.text)
 
 
 @dataclass(frozen=True)
@@ -77,10 +73,12 @@ def depth_figure(design: Design) -> Figure:
     widest = max((float(panel.size[0]) for panel in panels), default=1.0) * unit
     column_width = widest + _BESIDE
     width = max(_LEAST_WIDTH, 2 * _MARGIN + columns * column_width - _BESIDE)
-    figure = style.new_figure(width, height)
     levels = int(squares[:, 1].max(initial=0)) + 1
     # Few levels do not need the darkest shades, which would hide the lines inside cells.
     shades = style.LEVEL_COLOURS(np.arange(levels) / max(levels - 1, 4))
+    lines = _legend(design, shades, width)
+    height += _LINE * len(lines)
+    figure = style.new_figure(width, height)
     style.add_title(figure, design.name, _facts(design, levels), margin=_MARGIN)
 
     top = height - _HEAD
@@ -89,8 +87,8 @@ def depth_figure(design: Design) -> Figure:
             wide, high = panel.size * unit
             left = _MARGIN + column * column_width
             figure.text(
-                left / width, (top - 0.05) / height, panel.name, va="top", fontsize=style.TEXT,
-                fontweight="bold", parse_math=False,
+                left / width, top / height, panel.name, va="top", fontweight="bold",
+                parse_math=False,
             )  # fmt: skip
             axes = style.add_axes(figure, left, top - _NAME - high, wide, high)
             axes.set_xlim(panel.low[0], panel.low[0] + panel.size[0])
@@ -99,7 +97,7 @@ def depth_figure(design: Design) -> Figure:
             _draw_cells(axes, design, quads, panel, shades, unit)
             _draw_anchors(axes, design, corners[parts == panel.part], faces[parts == panel.part])
         top -= row_height + _BESIDE
-    _add_legend(figure, design, shades)
+    _add_legend(figure, design, lines)
     return figure
 
 
@@ -153,7 +151,14 @@ def _arrangement(panels: list[_Panel]) -> tuple[int, float]:
         widest = max(float(panel.size[0]) for panel in panels)
         tall = sum(max(float(panel.size[1]) for panel in row) for row in rows)
         wide = (_LARGEST_WIDTH - 2 * _MARGIN - _BESIDE * (columns - 1)) / columns
-        high = _LARGEST_HEIGHT - _HEAD - _FOOT - len(rows) * _NAME - _BESIDE * (len(rows) - 1)
+        high = (
+            _LARGEST_HEIGHT
+            - _HEAD
+            - _FOOT
+            - 2 * _LINE
+            - len(rows) * _NAME
+            - _BESIDE * (len(rows) - 1)
+        )
         unit = min(wide / max(widest, 1e-9), max(high, 1.0) / max(tall, 1e-9))
         # Twice the columns on half the paper are worth a little size.
         if unit > best[1] * 0.85:
@@ -163,7 +168,7 @@ def _arrangement(panels: list[_Panel]) -> tuple[int, float]:
 
 def _facts(design: Design, levels: int) -> str:
     words = [
-        f"{len(design.cells.addresses):,} cells by level of subdivision, deepest {levels - 1}",
+        f"{style.count(len(design.cells.addresses), 'cell')} by level, deepest {levels - 1}",
         "as drawn"
         if design.file.framework.mesh
         else "unrolled: around to the right, along upwards",
@@ -176,7 +181,7 @@ def _draw_cells(
 ) -> None:
     squares, types = design.cells.squares.astype(np.intp), design.cells.types
     levels = squares[panel.cells, 1]
-    empty = np.array([types[cell] == _NULL for cell in panel.cells])
+    empty = np.array([types[cell] == NULL for cell in panel.cells])
     fills = shades[levels].copy()
     fills[empty] = 1.0
     edges = np.ones_like(fills)
@@ -195,9 +200,9 @@ def _draw_cells(
         autolim=False,
     )
     segments, colours, widths = [], [], []
-    words = _words(design, panel.cells)
+    words = type_words(design, panel.cells)
     for word in sorted(set(words)):
-        pattern = _pattern(design, word)
+        lines_inside = pattern(design, word)
         chosen = np.array([word == other for other in words])
         if not len(pattern) or not chosen.any():
             continue
@@ -251,60 +256,50 @@ def _draw_anchors(axes: Axes, design: Design, corners: Floats, faces: NDArray[np
         )  # fmt: skip
 
 
-def _words(design: Design, cells: NDArray[np.intp]) -> list[str]:
-    """Return type and turn of every cell as expressed, such as ``3@1``."""
-    forest, setting = design.closed.forest, design.setting
-    words = []
-    for cell in cells:
-        kind = design.cells.types[cell]
-        stored, _, _ = forest.cell(setting, design.cells.addresses[cell])
-        # A cell may be expressed as another type than it stores: then its turn has no meaning.
-        words.append(stored if stored.split("@")[0] == kind else kind)
-    return words
-
-
-def _pattern(design: Design, word: str) -> Floats:
-    """Return the springs (s, 2, 2) of a type and turn inside the unit square, a little shrunk."""
-    kind, _, turn = word.partition("@")
-    own = design.file.cell_types.get(kind)
-    springs: tuple[str, ...] = _BUILT_IN.get(kind, ())
-    if own is not None:
-        springs = (*own.springs, *(_FAN if own.fan else ()))
-    ends = [[_turned(point, int(turn or 0)) for point in spring.split("-")] for spring in springs]
-    return 0.5 + 0.76 * (np.array(ends, dtype=np.float64).reshape(-1, 2, 2) - 0.5)
-
-
-def _turned(point: str, turn: int) -> tuple[float, float]:
-    return _POINTS[point if point == "x" else f"{point[0]}{(int(point[1]) + turn) % 4}"]
-
-
-def _add_legend(figure: Figure, design: Design, shades: Floats) -> None:
-    """Name levels and types below the map, each with its swatch and its number of cells."""
-    across, _ = figure.get_size_inches()
-    axes = style.add_axes(figure, 0, 0, across, _FOOT)
-    axes.set_xlim(0, across)
-    axes.set_ylim(0, _FOOT)
-    axes.set_axis_off()
+def _legend(design: Design, shades: Floats, width: float) -> list[tuple[str, list[_Entry]]]:
+    """Return the lines of the legend: their title and entries, no wider than a width [in]."""
     levels = Counter(int(level) for level in design.cells.squares[:, 1])
     types = Counter(design.cells.types)
+    blank = {kind: to_rgba("white") if kind == NULL else shades[0] for kind in types}
     rows = [
-        ("level", [(str(at), n, shades[at], "") for at, n in sorted(levels.items())]),
-        ("type", [(_NAMES.get(k, k), n, to_rgba("white"), k) for k, n in sorted(types.items())]),
+        ("level", [_Entry(str(at), n, shades[at], "") for at, n in sorted(levels.items())]),
+        ("type", [_Entry(type_name(k), n, blank[k], k) for k, n in sorted(types.items())]),
     ]
-    side = 0.15
-    for line, (title, entries) in enumerate(rows):
-        left, bottom = _MARGIN, 0.5 - 0.27 * line
-        middle = bottom + side / 2
+    lines: list[tuple[str, list[_Entry]]] = []
+    for title, entries in rows:
+        lines.append((title, []))
+        used = 0.0
+        for entry in entries:
+            if lines[-1][1] and used + entry.width > width - 2 * _MARGIN - _TITLE_WIDTH:
+                lines.append(("", []))
+                used = 0.0
+            lines[-1][1].append(entry)
+            used += entry.width
+    return lines
+
+
+def _add_legend(figure: Figure, design: Design, lines: list[tuple[str, list[_Entry]]]) -> None:
+    """Name levels and types below the map, each with its swatch and its number of cells."""
+    across, _ = figure.get_size_inches()
+    height = _FOOT + _LINE * len(lines)
+    axes = style.add_axes(figure, 0, 0, across, height)
+    axes.set_xlim(0, across)
+    axes.set_ylim(0, height)
+    axes.set_axis_off()
+    for number, (title, entries) in enumerate(lines, start=1):
+        left, bottom = _MARGIN, 0.3 + _LINE * (len(lines) - number)
+        middle = bottom + _SWATCH / 2
         axes.text(left, middle, title, va="center_baseline", fontweight="bold")
-        left += 0.55
-        for name, count, fill, kind in entries:
-            edge = style.GREY if kind else "none"
-            corner = (left, bottom)
-            axes.add_patch(Rectangle(corner, side, side, facecolor=fill, edgecolor=edge, lw=0.5))
-            pattern = _pattern(design, kind) * side + np.array([left, bottom])
-            axes.add_collection(
-                LineCollection(list(pattern), colors=style.INK, linewidths=0.5), autolim=False
+        left += _TITLE_WIDTH
+        for entry in entries:
+            edge = style.GREY if entry.kind else "none"
+            axes.add_patch(
+                Rectangle((left, bottom), _SWATCH, _SWATCH, fc=entry.fill, ec=edge, lw=0.5)
             )
-            text = f"{name}  ({count:,})"
-            axes.text(left + side + 0.07, middle, text, va="center_baseline", parse_math=False)
-            left += side + 0.35 + 0.068 * len(text)
+            inside = pattern(design, entry.kind) * _SWATCH + np.array([left, bottom])
+            axes.add_collection(
+                LineCollection(list(inside), colors=style.INK, linewidths=0.5), autolim=False
+            )
+            place = left + _SWATCH + 0.07
+            axes.text(place, middle, entry.text, va="center_baseline", parse_math=False)
+            left += entry.width

@@ -25,8 +25,14 @@ def forces_figure(design: Design, equilibrium: Equilibrium) -> Figure:
     tall, _ = np.histogram(np.clip(forces, low, high), edges)
     middles = np.sqrt(edges[1:] * edges[:-1]) if log else (edges[1:] + edges[:-1]) / 2
 
+    lost = int(np.count_nonzero(forces < low))
     figure = style.new_figure(_WIDTH, _HEIGHT)
-    facts = f"{len(forces):,} springs by force" + (", logarithmic scale" if log else "")
+    words = [f"{style.count(len(forces), 'spring')} by force"]
+    if log:
+        words.append("logarithmic scale")
+    if lost:
+        words.append(f"{lost:,} too weak for it in the first bar")
+    facts = ", ".join(words)
     style.add_title(figure, design.name, facts)
     axes = style.add_axes(figure, 0.75, 0.6, _WIDTH - 1.1, _HEIGHT - 1.7)
     if log:

@@ -34,7 +34,8 @@ def generations_figure(run: Run) -> Figure:
     figure = style.new_figure(_WIDTH, _HEIGHT)
     table = run.table
     individuals = len(table["springs"]) if table else 0
-    facts = f"{run.generations:,} generations  ·  {individuals:,} individuals"
+    generations = style.count(run.generations, "generation")
+    facts = f"{generations}  ·  {style.count(individuals, 'individual')}"
     style.add_title(figure, run.design.name, facts)
     _add_legend(figure)
     tall = (_HEIGHT - _HEAD - _FOOT - 2 * _BETWEEN) / 3

@@ -37,7 +37,7 @@ def place_labels(
     frame = axes.get_window_extent()
     low, high = np.array([frame.p0, frame.p1]) * to_points
     middle = (around.min(axis=0) + around.max(axis=0)) / 2
-    taken: list[NDArray[np.float64]] = []
+    taken, taken_half = np.empty((0, 2)), np.empty((0, 2))
     for point, target, text in zip(points, targets, texts, strict=True):
         outward = target - middle
         heading = np.arctan2(outward[1], outward[0]) if np.any(outward) else np.pi / 2
@@ -47,13 +47,12 @@ def place_labels(
         for reach in (gap, 1.8 * gap, 3.0 * gap):
             for turn in _TURNS:
                 way = np.array([np.cos(heading + turn), np.sin(heading + turn)])
-                # The box touches the circle of the gap with its near side.
-                middle_of_text = target + way * (reach + np.min(half / np.maximum(abs(way), 1e-9)))
+                # Beside the point a text starts or ends there; above and below it is centred.
+                middle_of_text = target + way * reach + half * np.clip(1.5 * way, -1, 1)
                 cost = 0.6 * abs(turn) + 0.12 * reach
                 cost += 0.35 * np.sum(np.all(np.abs(near - middle_of_text) < half + 0.5, axis=1))
-                cost += 200.0 * sum(
-                    bool(np.all(np.abs(box[0] - middle_of_text) < half + box[1])) for box in taken
-                )
+                apart = half + taken_half
+                cost += 200.0 * np.sum(np.all(np.abs(taken - middle_of_text) < apart, axis=1))
                 cost += 200.0 * np.sum(np.all(np.abs(targets - middle_of_text) < half + 2, axis=1))
                 outside = np.any(middle_of_text - half < low) or np.any(
                     middle_of_text + half > high
@@ -61,7 +60,7 @@ def place_labels(
                 cost += _MISSING * bool(outside)
                 if cost < best_cost:
                     best, best_cost = middle_of_text, cost
-        taken.append(np.array([best, half]))
+        taken, taken_half = np.vstack([taken, best]), np.vstack([taken_half, half])
         written = axes.annotate(
             text,
             (point[0], point[1]),

@@ -86,9 +86,9 @@ def _facts(design: Design, equilibrium: Equilibrium) -> str:
     measures = design.measure(equilibrium)
     differential = measures.force_differential
     words = [
-        f"{measures.springs:,} springs",
-        f"{measures.cells:,} cells",
-        f"{len(design.anchors)} anchors",
+        style.count(measures.springs, "spring"),
+        style.count(measures.cells, "cell"),
+        style.count(len(design.anchors), "anchor"),
         f"force differential {'undefined' if differential is None else style.plain(differential)}",
     ]
     return "  ·  ".join(words if equilibrium.converged else [*words, "not in equilibrium"])

@@ -35,7 +35,7 @@ def pareto_figure(run: Run) -> Figure:
     lost = (len(table["springs"]) if table else 0) - len(points)
 
     figure = style.new_figure(_WIDTH, _HEIGHT)
-    words = [f"{len(points):,} individuals", f"{len(front):,} in the Pareto set"]
+    words = [style.count(len(points), "individual"), f"{len(front):,} in the Pareto set"]
     if lost:
         words.append(f"{lost:,} undefined, not shown")
     style.add_title(figure, run.design.name, "  ·  ".join(words))
@@ -60,7 +60,8 @@ def pareto_figure(run: Run) -> Figure:
     # Text may lie on a few points, but not on the front.
     crowd = np.concatenate([sample, _along_front(axes, front)])
     _draw_marks(axes, *marks, crowd=crowd)
-    _add_generations(figure, run.generations)
+    if run.generations > 1:
+        _add_generations(figure, run.generations)
     return figure
 
 
@@ -71,13 +72,21 @@ def _marks(run: Run) -> tuple[Floats, list[str], list[str]]:
         ("best", "o", run.final if run.generations else None),
         ("lowest", "D", run.lowest_standing),
     ]
-    at, names, markers = [], [], []
+    at: list[tuple[float, float]] = []
+    names: list[str] = []
+    markers: list[str] = []
     for name, marker, standing in standings:
         if standing is None or standing["force_differential"] is None:
             continue
         springs, differential = standing["springs"], standing["force_differential"]
-        at.append((float(springs), float(differential)))
-        names.append(f"{name}: {springs:,} springs, {style.plain(differential)}")
+        if (springs, differential) in at:
+            # The best may be the lowest too.
+            same = at.index((springs, differential))
+            names[same] = f"{name}, {names[same]}"
+            continue
+        at.append((springs, differential))
+        words = style.count(springs, "spring")
+        names.append(f"{name}: {words}, differential {style.plain(differential)}")
         markers.append(marker)
     return np.array(at, dtype=np.float64).reshape(-1, 2), names, markers
 
@@ -139,7 +148,7 @@ def _draw_marks(
 
 
 def _add_generations(figure: Figure, generations: int) -> None:
-    colours = ScalarMappable(Normalize(1, max(generations, 2)), style.GENERATION_COLOURS)
+    colours = ScalarMappable(Normalize(1, generations), style.GENERATION_COLOURS)
     bar_axes = style.add_axes(figure, _WIDTH - _RIGHT - 2.2, _HEIGHT - 0.72, 2.2, 0.08)
     bar = figure.colorbar(colours, cax=bar_axes, orientation="horizontal")
     bar.outline.set_visible(False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import os
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
+from ..errors import printable
 from ..files import WriteError, explain, write_atomically
 
 DPI = 200
@@ -99,7 +101,10 @@ def styled() -> Iterator[None]:
         if not key.startswith(("backend", "interactive", "toolbar", "webagg", "date."))
     }
     # Typed loosely: the stubs list every setting by name.
-    with matplotlib.rc_context(cast(Any, {**settings, **_SETTINGS})):
+    style = matplotlib.rc_context(cast(Any, {**settings, **_SETTINGS}))
+    with style, warnings.catch_warnings():
+        # A name in a script that the font lacks shows as boxes; that is no reason to talk.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
 
 
@@ -120,8 +125,16 @@ def add_title(figure: Figure, name: str, facts: str, *, margin: float = 0.4) -> 
     """Write the title line of a picture: what it shows, and its facts below, smaller."""
     across, up = figure.get_size_inches()
     left = margin / across
+    most = int(across * 8)
+    name = name if len(name) <= most else f"{name[: most - 1]}…"
     figure.text(
-        left, 1 - 0.3 / up, name, fontsize=TITLE, fontweight="bold", va="top", parse_math=False
+        left,
+        1 - 0.3 / up,
+        printable(name),
+        fontsize=TITLE,
+        fontweight="bold",
+        va="top",
+        parse_math=False,
     )
     figure.text(left, 1 - 0.57 / up, facts, fontsize=TEXT, color=GREY, va="top", parse_math=False)
 
@@ -181,6 +194,11 @@ def plain(value: float, _position: int | None = None) -> str:
     digits = 3 if value == 0 else max(0, 2 - math.floor(math.log10(abs(value))))
     text = f"{value:,.{digits}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def count(number: int, singular: str) -> str:
+    """Return a number of things in words, such as "1 spring" or "1,024 springs"."""
+    return f"{number:,} {singular}{'' if number == 1 else 's'}"
 
 
 def set_ticks(axis: Axis, low: float, high: float, *, log: bool, count: int = 5) -> None:

@@ -76,12 +76,8 @@ const ROOT: u32 = u32::MAX;
 impl Symbolic {
     /// Orders a matrix and counts the entries of its factor.
     pub fn new(matrix: &SymmetricMatrix) -> Symbolic {
-        let order = amd::order(
-            matrix.size() as i64,
-            &matrix.starts,
-            &matrix.columns,
-            &amd::Control::default(),
-        );
+        let order =
+            amd::order(matrix.size() as i64, &matrix.starts, &matrix.columns, &amd::Control::default());
         // A refused pattern can't occur (starts ascend, columns are in range); the given order is valid anyway.
         let order = match order {
             Ok((order, _, _)) => order.into_iter().map(|row| row as u32).collect(),
@@ -150,7 +146,10 @@ impl Factor {
     ///
     /// # Errors
     /// A pivot that is not above zero.
-    pub fn with_symbolic(matrix: &SymmetricMatrix, symbolic: Symbolic) -> Result<Factor, NotPositiveDefinite> {
+    pub fn with_symbolic(
+        matrix: &SymmetricMatrix,
+        symbolic: Symbolic,
+    ) -> Result<Factor, NotPositiveDefinite> {
         let size = matrix.size();
         let mut rows = vec![0u32; symbolic.fill()];
         let mut values = vec![0.0; symbolic.fill()];

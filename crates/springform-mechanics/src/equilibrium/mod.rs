@@ -70,7 +70,10 @@ impl Equilibrium {
     fn at(network: &Network<'_>, positions: Vec<Vector>, status: Status, iterations: u32) -> Self {
         let forces = network.forces(&positions);
         let residual = relative_residual(network, &positions, &forces);
-        let status = if residual.is_finite() { status } else { Status::Singular };
+        let finite = residual.is_finite()
+            && forces.iter().all(|force| force.is_finite())
+            && positions.iter().flatten().all(|coordinate| coordinate.is_finite());
+        let status = if finite { status } else { Status::Singular };
         Equilibrium { positions, forces, residual, status, iterations }
     }
 }

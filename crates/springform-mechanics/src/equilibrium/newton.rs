@@ -29,7 +29,8 @@ pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
         let Some(step) = newton_step(network, &free, &positions, &out_of_balance) else {
             return Equilibrium::at(network, positions, Status::Singular, iterations);
         };
-        let slope: f64 = free.nodes.iter().zip(&step).map(|(&n, &s)| dot(out_of_balance[n as usize], s)).sum();
+        let slope: f64 =
+            free.nodes.iter().zip(&step).map(|(&n, &s)| dot(out_of_balance[n as usize], s)).sum();
         let (moved, lower) = search(network, &free, &positions, &step, energy, slope);
         positions = moved;
         energy = lower;
@@ -40,7 +41,8 @@ pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
 /// The given positions, or the net without rest lengths where a spring has no direction.
 fn start(network: &Network<'_>, settings: &Settings) -> Vec<Vector> {
     let lengths = network.lengths(&network.positions);
-    let directed = lengths.iter().zip(network.rest_length.iter()).all(|(&length, &rest)| rest == 0.0 || length > 0.0);
+    let directed =
+        lengths.iter().zip(network.rest_length.iter()).all(|(&length, &rest)| rest == 0.0 || length > 0.0);
     if directed { network.positions.to_vec() } else { linear::solve(network, settings).positions }
 }
 
@@ -76,7 +78,8 @@ fn tangent(network: &Network<'_>, free: &FreeNodes, positions: &[Vector], clampe
     let mut diagonal = vec![0.0; 3 * free.nodes.len()];
     let mut entries = Vec::with_capacity(15 * network.springs.len());
     for (spring, &[a, b]) in network.springs.iter().enumerate() {
-        let block = spring_tangent(network, spring, subtract(positions[b as usize], positions[a as usize]), clamped);
+        let block =
+            spring_tangent(network, spring, subtract(positions[b as usize], positions[a as usize]), clamped);
         let rows = [free.rows[a as usize], free.rows[b as usize]];
         for row in rows.into_iter().filter(|&row| row != FIXED) {
             for i in 0..3 {
@@ -93,7 +96,12 @@ fn tangent(network: &Network<'_>, free: &FreeNodes, positions: &[Vector], clampe
 }
 
 /// k [(1 − r/L)(I − n nᵀ) + n nᵀ], with the first factor kept above a floor when `clamped`.
-pub(super) fn spring_tangent(network: &Network<'_>, spring: usize, along: Vector, clamped: bool) -> [Vector; 3] {
+pub(super) fn spring_tangent(
+    network: &Network<'_>,
+    spring: usize,
+    along: Vector,
+    clamped: bool,
+) -> [Vector; 3] {
     let (k, rest, length) = (network.stiffness[spring], network.rest_length[spring], length(along));
     let exact = if rest == 0.0 { 1.0 } else { 1.0 - rest / length.max(f64::MIN_POSITIVE) };
     let transverse = if clamped { exact.max(TRANSVERSE_FLOOR) } else { exact };

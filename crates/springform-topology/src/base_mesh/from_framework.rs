@@ -125,12 +125,8 @@ impl Draft {
         for row in 0..part.along {
             for column in 0..part.around {
                 let (i, j) = (i64::from(column), row);
-                let corners = [
-                    lattice.at(j, i),
-                    lattice.at(j, i + 1),
-                    lattice.at(j + 1, i + 1),
-                    lattice.at(j + 1, i),
-                ];
+                let corners =
+                    [lattice.at(j, i), lattice.at(j, i + 1), lattice.at(j + 1, i + 1), lattice.at(j + 1, i)];
                 let (u, v) = (2 * column as i32, 2 * row as i32);
                 let places = [(u, v), (u + 2, v), (u + 2, v + 2), (u, v + 2)];
                 self.faces.push(DraftFace {
@@ -299,7 +295,8 @@ impl Draft {
             for step in 0..length {
                 let opposite = if join.reversed { length - 1 - step } else { step };
                 let (a, b) = (first.edge(step), second.edge(opposite));
-                let (a_number, b_number) = (border_starts[first.border] + a, border_starts[second.border] + b);
+                let (a_number, b_number) =
+                    (border_starts[first.border] + a, border_starts[second.border] + b);
                 if a_number == b_number {
                     let problem = "the arc is joined to itself; give two different arcs";
                     return Err(MeshError::new(key, problem));
@@ -307,7 +304,8 @@ impl Draft {
                 seams.union(a_number as u32, b_number as u32);
                 for edge in [a_number, b_number] {
                     if cords[edge].is_some_and(|(cord, _)| cord != join.cord) {
-                        let problem = "the same edge is joined with and without a cord; say the same for both joins";
+                        let problem =
+                            "the same edge is joined with and without a cord; say the same for both joins";
                         return Err(MeshError::new(key, problem));
                     }
                     cords[edge] = Some((join.cord, number));
@@ -374,7 +372,8 @@ impl Draft {
                 self.borders[border].edges[edge - border_starts[border]].face
             };
             let (kept, merged) = (face_of(first).min(face_of(second)), face_of(first).max(face_of(second)));
-            let (Some(kept_half), Some(merged_half)) = (self.faces[kept].half, self.faces[merged].half) else {
+            let (Some(kept_half), Some(merged_half)) = (self.faces[kept].half, self.faces[merged].half)
+            else {
                 continue;
             };
             let apex = self.faces[merged].corners[(merged_half.middle_corner + 2) % 4];
@@ -413,7 +412,8 @@ impl Draft {
             let corners = face.corners.map(&mut number);
             if repeated_corner(&corners).is_some() {
                 let part = &framework.parts[face.map.part as usize].name;
-                let problem = format!("the joins fold a cell of {part} onto itself: two of its corners become one");
+                let problem =
+                    format!("the joins fold a cell of {part} onto itself: two of its corners become one");
                 return Err(MeshError::new("framework.joins", problem));
             }
             faces.push(corners);

@@ -98,9 +98,10 @@ impl BaseMesh {
         let mut used = vec![false; vertex_count as usize];
         for (index, face) in faces.iter().enumerate() {
             for &vertex in face {
-                *used.get_mut(vertex as usize).ok_or_else(|| {
-                    MeshError::new(key(index), format!("vertex {vertex} does not exist"))
-                })? = true;
+                *used
+                    .get_mut(vertex as usize)
+                    .ok_or_else(|| MeshError::new(key(index), format!("vertex {vertex} does not exist")))? =
+                    true;
             }
             if let Some(vertex) = repeated_corner(face) {
                 let problem = format!("corner {vertex} occurs twice; a cell needs four corners");

@@ -62,10 +62,7 @@ pub fn support_springs(hanging: [bool; 4]) -> Vec<[Support; 2]> {
     let turned = |base: u8, by: u8| (base + by) % 4;
     match sides.as_slice() {
         [] => Vec::new(),
-        &[side] => vec![
-            [Hanging(side), Corner(turned(side, 2))],
-            [Hanging(side), Corner(turned(side, 3))],
-        ],
+        &[side] => vec![[Hanging(side), Corner(turned(side, 2))], [Hanging(side), Corner(turned(side, 3))]],
         &[a, b] if b - a == 2 => vec![[Hanging(a), Hanging(b)]],
         &[a, b] => {
             let first = if b - a == 1 { a } else { b };

@@ -167,16 +167,13 @@ impl Design {
         // Half of the edits go to young cells, so that levels differ widely.
         let young = if dice.percent(50) { cells.len().saturating_sub(6) } else { 0 };
         let (cell, place) = dice.pick(&cells[young..]);
-        let contents: [Content; 4] =
-            std::array::from_fn(|_| content(dice, self.method, &self.catalogue));
+        let contents: [Content; 4] = std::array::from_fn(|_| content(dice, self.method, &self.catalogue));
         let stored = self.forest.children(cell);
         let childless = stored.filter(|children| {
             self.forest.is_on(cell) && children.iter().all(|&child| self.forest.children(child).is_none())
         });
         match (dice.below(100), stored, childless) {
-            (0..50, None, _) if place.level < DEEPEST => {
-                Edit::Subdivide { cell: place, children: contents }
-            }
+            (0..50, None, _) if place.level < DEEPEST => Edit::Subdivide { cell: place, children: contents },
             (0..30, Some(_), _) => Edit::Switch { cell: place, on: !self.forest.is_on(cell) },
             (30..40, _, Some(children)) => {
                 Edit::Merge { cell: place, children: children.map(|child| self.forest.content(child)) }
@@ -210,7 +207,8 @@ impl Design {
 
 /// Every cell of a forest, switched off or not, in order of face and child.
 pub fn stored_cells(forest: &Forest) -> Vec<(CellIndex, Place)> {
-    let mut open: Vec<_> = (0..forest.top_level()).rev().map(|face| (forest.top(face), Place::top(face))).collect();
+    let mut open: Vec<_> =
+        (0..forest.top_level()).rev().map(|face| (forest.top(face), Place::top(face))).collect();
     let mut cells = Vec::new();
     while let Some((cell, place)) = open.pop() {
         cells.push((cell, place));
@@ -224,7 +222,8 @@ pub fn stored_cells(forest: &Forest) -> Vec<(CellIndex, Place)> {
 /// Places of expressed cells, found without the forest's own visits.
 pub fn leaves(forest: &Forest) -> Vec<(CellIndex, Place)> {
     let hidden = |place: Place| {
-        (0..place.level).any(|level| forest.find(place.ancestor(level)).is_some_and(|above| !forest.is_on(above)))
+        (0..place.level)
+            .any(|level| forest.find(place.ancestor(level)).is_some_and(|above| !forest.is_on(above)))
     };
     let stands = |cell: CellIndex| forest.children(cell).is_none() || !forest.is_on(cell);
     stored_cells(forest).into_iter().filter(|&(cell, place)| stands(cell) && !hidden(place)).collect()
@@ -267,9 +266,12 @@ fn join(dice: &mut Dice, framework: &Framework) -> Join {
     let second = arc(dice, framework);
     let (reversed, cord) = (dice.percent(50), dice.percent(50));
     match framework.joins.last() {
-        Some(last) if dice.percent(35) => {
-            Join { first: last.second, second: Arc { length: last.second.length, ..second }, reversed, ..*last }
-        }
+        Some(last) if dice.percent(35) => Join {
+            first: last.second,
+            second: Arc { length: last.second.length, ..second },
+            reversed,
+            ..*last
+        },
         _ => {
             let first = Arc { length: second.length, ..arc(dice, framework) };
             Join { first, second, reversed, cord }

@@ -174,7 +174,8 @@ impl SlowNet {
             let cells = owners.iter().map(|&cell| cell as usize).collect();
             (pair(spring.nodes.map(|node| spots[node as usize])), SlowSpring { cells, ring: spring.ring })
         });
-        let boundary = |cell| expression.cell_boundaries.of(cell).iter().map(|&node| spots[node as usize]).collect();
+        let boundary =
+            |cell| expression.cell_boundaries.of(cell).iter().map(|&node| spots[node as usize]).collect();
         SlowNet {
             springs: springs.collect(),
             contents: expression.cells.iter().map(|cell| cell.content).collect(),
@@ -251,7 +252,8 @@ impl Drawing<'_> {
         let mesh = &self.design.mesh;
         let kind = self.design.catalogue.get(content.kind);
         self.nodes.extend((0..4).map(|k| corner(mesh, place, k)));
-        self.nodes.extend(kind.springs.iter().flatten().map(|&point| named(mesh, place, point, content.turn)));
+        self.nodes
+            .extend(kind.springs.iter().flatten().map(|&point| named(mesh, place, point, content.turn)));
         if kind.fan {
             self.nodes.insert(named(mesh, place, Point::Centre, 0));
         }

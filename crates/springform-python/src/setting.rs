@@ -1,26 +1,27 @@
-//! Settings, bare networks and solvers for Python.
+//! Designs without their forest, and the nets that grow in them, for Python.
 
 use crate::convert::{GroupArrays, groups, refusal, rows};
+use crate::measures::measures_dict;
+use crate::network::{NetworkArrays, values, vectors};
 use crate::topology::{BaseMesh, Forest};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springform_evolution::phenotype;
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status, implicit_euler};
+use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::{Measures, apertures, inner_forces};
-use springform_mechanics::network::{Network, SpringLaw};
+use springform_mechanics::network::SpringLaw;
 use springform_mechanics::vector::Vector;
+use springform_topology::address::Place;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
 use springform_topology::expression::Expression;
 use springform_topology::filters::Method;
 use springform_topology::forest::{self, Content, NodePair, Override};
 use springform_topology::node_key::NodeKey;
-use springform_topology::notation::{parse_content, read_top_cell};
+use springform_topology::notation::{parse_content, read_top_cell, write_cell, write_content};
 use springform_topology::sides;
-use springform_topology::address::Place;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 #[pyclass(frozen, module = "springform._core")]
@@ -52,7 +53,9 @@ impl Setting {
         };
         let numbered = lines.iter().enumerate();
         numbered
-            .map(|(at, line)| pair(line).map_err(|problem| refusal(format!("overrides.{key}[{at}]"), problem)))
+            .map(|(at, line)| {
+                pair(line).map_err(|problem| refusal(format!("overrides.{key}[{at}]"), problem))
+            })
             .collect()
     }
 }
@@ -130,6 +133,40 @@ impl Setting {
         Ok(Forest { forest: grown })
     }
 
+    /// Notation of the top-level cells that differ from the default, and overrides (added, cut).
+    fn notation(&self, forest: &Forest, default: &str) -> (BTreeMap<u32, String>, Vec<String>, Vec<String>) {
+        let forest = &forest.forest;
+        let cells = (0..forest.top_level())
+            .map(|face| (face, write_cell(forest, forest.top(face), &self.setting.catalogue)))
+            .filter(|(_, text)| text != default)
+            .collect();
+        let (mut added, mut cut) = (Vec::new(), Vec::new());
+        for (pair, what) in forest.overrides() {
+            let [a, b] = pair.keys();
+            let list = if *what == Override::Added { &mut added } else { &mut cut };
+            list.push(format!("{a} {b}"));
+        }
+        (cells, added, cut)
+    }
+
+    /// A forest changed by edits, each a line of text.
+    fn edited(&self, forest: &Forest, edits: Vec<String>) -> PyResult<Forest> {
+        let mut forest = forest.forest.clone();
+        Edit::apply_all(&self.edits(&edits)?, &mut forest).map_err(|error| refusal("edit", error))?;
+        Ok(Forest { forest })
+    }
+
+    /// Type and turn, switch, and whether children are stored, of the cell at an address.
+    fn cell(&self, forest: &Forest, address: &str) -> PyResult<(String, bool, bool)> {
+        let place = Place::parse(address).map_err(|error| refusal("cell", error))?;
+        let cell = forest
+            .forest
+            .find(place)
+            .ok_or_else(|| refusal("cell", format!("cell {address} does not exist")))?;
+        let content = write_content(forest.forest.content(cell), &self.setting.catalogue);
+        Ok((content, forest.forest.is_on(cell), forest.forest.children(cell).is_some()))
+    }
+
     /// A closed copy of a forest and the edits that closing took.
     fn closed(&self, forest: &Forest) -> PyResult<(Forest, Vec<String>)> {
         let mut forest = forest.forest.clone();
@@ -172,9 +209,9 @@ impl Setting {
     /// Checks that the method allows a cell type, and returns its canonical word.
     fn cell_type(&self, word: &str) -> PyResult<String> {
         let (catalogue, method) = (&self.setting.catalogue, self.setting.method);
-        let kind = catalogue
-            .find(word)
-            .ok_or_else(|| refusal("types", format!("there is no cell type '{word}'; use 0-6 or a defined name")))?;
+        let kind = catalogue.find(word).ok_or_else(|| {
+            refusal("types", format!("there is no cell type '{word}'; use 0-6 or a defined name"))
+        })?;
         if !method.allows(kind, catalogue) {
             let problem =
                 format!("method {} allows {}, not type {word}", method.name(), method.allowed_words());
@@ -299,162 +336,4 @@ fn subdivide_to(
     }
     Edit::Subdivide { cell: place, children: [content; 4] }.apply(forest)?;
     (0..4).try_for_each(|k| subdivide_to(forest, place.child(k), level, content))
-}
-
-pub fn measures_dict<'py>(py: Python<'py>, measures: &Measures) -> PyResult<Bound<'py, PyDict>> {
-    let result = PyDict::new(py);
-    result.set_item("springs", measures.springs)?;
-    result.set_item("nodes", measures.nodes)?;
-    result.set_item("cells", measures.cells)?;
-    result.set_item("force_differential", measures.force_differential)?;
-    for (name, value) in columns(measures) {
-        result.set_item(name, value)?;
-    }
-    Ok(result)
-}
-
-/// The measures that are plain numbers, by name.
-pub fn columns(measures: &Measures) -> [(&'static str, f64); 11] {
-    [
-        ("force_min", measures.force_min),
-        ("force_max", measures.force_max),
-        ("force_mean", measures.force_mean),
-        ("force_deviation", measures.force_deviation),
-        ("force_variation", measures.force_variation),
-        ("force_range", measures.force_range),
-        ("total_length", measures.total_length),
-        ("load_path", measures.load_path),
-        ("area", measures.area),
-        ("shortest_spring", measures.shortest_spring),
-        ("length_per_area", measures.length_per_area),
-    ]
-}
-
-fn vectors<'a>(key: &str, array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [Vector]> {
-    if array.shape()[1] != 3 || !array.is_c_contiguous() {
-        return Err(refusal(key, "must be a C-contiguous array of shape (n, 3)"));
-    }
-    Ok(array.as_slice()?.as_chunks().0)
-}
-
-fn values<'a, T: numpy::Element>(key: &str, array: &'a PyReadonlyArray1<'_, T>) -> PyResult<&'a [T]> {
-    array.as_slice().map_err(|_| refusal(key, "must be a contiguous array"))
-}
-
-/// Arrays of a bare network, held while Rust reads them.
-#[derive(FromPyObject)]
-pub struct NetworkArrays<'py> {
-    positions: PyReadonlyArray2<'py, f64>,
-    springs: PyReadonlyArray2<'py, u32>,
-    fixed: PyReadonlyArray1<'py, bool>,
-    stiffness: PyReadonlyArray1<'py, f64>,
-    rest_length: PyReadonlyArray1<'py, f64>,
-    loads: PyReadonlyArray2<'py, f64>,
-}
-
-impl NetworkArrays<'_> {
-    fn network(&self) -> PyResult<Network<'_>> {
-        if self.springs.shape()[1] != 2 || !self.springs.is_c_contiguous() {
-            return Err(refusal("springs", "must be a C-contiguous array of shape (m, 2)"));
-        }
-        let network = Network {
-            positions: Cow::Borrowed(vectors("positions", &self.positions)?),
-            springs: Cow::Borrowed(self.springs.as_slice()?.as_chunks().0),
-            stiffness: Cow::Borrowed(values("stiffness", &self.stiffness)?),
-            rest_length: Cow::Borrowed(values("rest_length", &self.rest_length)?),
-            loads: Cow::Borrowed(vectors("loads", &self.loads)?),
-            fixed: Cow::Borrowed(values("fixed", &self.fixed)?),
-        };
-        network.check().map_err(|error| refusal("network", error))?;
-        Ok(network)
-    }
-}
-
-/// Solves a bare network by "direct" or "implicit-euler".
-#[pyfunction]
-pub fn solve<'py>(
-    py: Python<'py>,
-    network: NetworkArrays<'py>,
-    tolerance: f64,
-    iterations: u32,
-    solver: &str,
-) -> PyResult<Bound<'py, PyDict>> {
-    let settings = Settings { tolerance, iterations };
-    let network = network.network()?;
-    let result = match solver {
-        "direct" => py.detach(|| equilibrium::solve(&network, &settings)),
-        "implicit-euler" => {
-            py.detach(|| implicit_euler::solve(&network, &settings, implicit_euler::Motion::default()))
-        }
-        _ => return Err(refusal("solver", format!("unknown solver '{solver}'; use direct or implicit-euler"))),
-    };
-    equilibrium_dict(py, result)
-}
-
-/// Force out of balance at every free node of a bare network, (n, 3) N.
-#[pyfunction]
-pub fn residuals<'py>(
-    py: Python<'py>,
-    network: NetworkArrays<'py>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let network = network.network()?;
-    rows(py, equilibrium::residuals(&network, &network.positions))
-}
-
-fn equilibrium_dict(py: Python<'_>, equilibrium: Equilibrium) -> PyResult<Bound<'_, PyDict>> {
-    let result = PyDict::new(py);
-    let reason = match equilibrium.status {
-        Status::Converged => String::new(),
-        Status::IterationLimit => {
-            format!("stopped after {} iterations at a residual of {:.2e}", equilibrium.iterations, equilibrium.residual)
-        }
-        Status::Unheld { node } => {
-            format!("node {node} is held by no springs that lead to a fixed node")
-        }
-        Status::Singular => "the stiffness matrix is singular or numbers overflowed".to_owned(),
-    };
-    result.set_item("positions", rows(py, equilibrium.positions)?)?;
-    result.set_item("forces", PyArray1::from_vec(py, equilibrium.forces))?;
-    result.set_item("residual", equilibrium.residual)?;
-    result.set_item("converged", equilibrium.status == Status::Converged)?;
-    result.set_item("iterations", equilibrium.iterations)?;
-    result.set_item("reason", reason)?;
-    Ok(result)
-}
-
-/// A bare network on its way to equilibrium, step by step.
-#[pyclass(module = "springform._core")]
-pub struct ImplicitEuler {
-    euler: implicit_euler::ImplicitEuler<'static>,
-    steps: u32,
-}
-
-#[pymethods]
-impl ImplicitEuler {
-    #[new]
-    fn new(network: NetworkArrays<'_>, step: f64, growth: f64, drag: f64) -> PyResult<Self> {
-        let borrowed = network.network()?;
-        let owned = Network {
-            positions: Cow::Owned(borrowed.positions.into_owned()),
-            springs: Cow::Owned(borrowed.springs.into_owned()),
-            stiffness: Cow::Owned(borrowed.stiffness.into_owned()),
-            rest_length: Cow::Owned(borrowed.rest_length.into_owned()),
-            loads: Cow::Owned(borrowed.loads.into_owned()),
-            fixed: Cow::Owned(borrowed.fixed.into_owned()),
-        };
-        let motion = implicit_euler::Motion { step, growth, drag, ..implicit_euler::Motion::default() };
-        Ok(ImplicitEuler { euler: implicit_euler::ImplicitEuler::new(owned, motion), steps: 0 })
-    }
-
-    /// Makes one time step and returns the state after it.
-    fn advance<'py>(&mut self, py: Python<'py>, tolerance: f64) -> PyResult<Bound<'py, PyDict>> {
-        let settings = Settings { tolerance, iterations: 0 };
-        self.steps += 1;
-        let (euler, steps) = (&mut self.euler, self.steps);
-        let state = py.detach(|| {
-            euler.advance();
-            euler.state(&settings, steps)
-        });
-        equilibrium_dict(py, state)
-    }
 }

@@ -1,0 +1,29 @@
+"""Every example runs and ends with the line it should."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+LAST_LINES = {
+    "01_one_cylinder.py": "force differential 3.3",
+    "02_refine_by_hand.py": "undone: 4.5",
+    "03_stress_seeking.py": "type 6, dynamic: ",
+    "04_evolve.py": "rebuilt: ",
+    "05_animate.py": "converged: True",
+}
+
+
+def test_every_example_is_tested() -> None:
+    assert {path.name for path in EXAMPLES.glob("*.py")} == set(LAST_LINES)
+
+
+@pytest.mark.parametrize("name", LAST_LINES)
+def test_example_ends_as_it_should(name: str) -> None:
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / name], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1].startswith(LAST_LINES[name])
