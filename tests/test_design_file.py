@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from springform import design_file, scenes
-from springform.design_file import DesignFile
+from springform.design_schema import BUILT_IN_CELL_TYPES, DesignFile
 from springform.errors import DesignError, InputError, SpringformError
 from springform.files import WriteError, write_atomically
 from springform.key_lines import Format, line_of_key
@@ -124,7 +124,7 @@ def positioned(draw: st.DrawFn, places: list[dict[str, Any]]) -> list[dict[str, 
 
 @st.composite
 def designs(draw: st.DrawFn) -> dict[str, Any]:
-    own_names = NAMES.filter(lambda name: name not in design_file.BUILT_IN_CELL_TYPES)
+    own_names = NAMES.filter(lambda name: name not in BUILT_IN_CELL_TYPES)
     cell_type = st.fixed_dictionaries(
         {},
         optional={

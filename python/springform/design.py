@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, design_file, scenes
-from .design_file import DesignFile, ForestSection, Overrides
+from .design_schema import Arc, DesignFile, ForestSection, Overrides
 from .errors import DesignError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
@@ -364,7 +364,7 @@ def _base_mesh(file: DesignFile) -> _core.BaseMesh:
     parts += [(s.name, False, s.across, s.along) for s in framework.sheets]
     numbers = {part[0]: number for number, part in enumerate(parts)}
 
-    def arc(arc: design_file.Arc) -> tuple[int, str, int, int]:
+    def arc(arc: Arc) -> tuple[int, str, int, int]:
         name, side = arc.ring.split(".")
         return numbers[name], side, arc.start, arc.length
 

@@ -6,7 +6,8 @@ import os
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-from .design_file import DesignFile, load, parse
+from .design_file import load, parse
+from .design_schema import DesignFile
 from .errors import DesignError
 from .wording import nearest
 

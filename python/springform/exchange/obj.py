@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..design_file import DesignFile, from_data
+from ..design_file import from_data
+from ..design_schema import DesignFile
 from ..errors import DesignError
 from ..files import read_text
 from ..wording import index_range, shown

@@ -199,23 +199,27 @@ def _draw_cells(
         ),
         autolim=False,
     )
+    _draw_patterns(axes, design, quads[panel.cells], panel, shades[levels], sides)
+
+
+def _draw_patterns(
+    axes: Axes, design: Design, quads: Floats, panel: _Panel, fills: Floats, sides: Floats
+) -> None:
+    """Draw the springs inside the cells of a part; `sides` are the lengths of sides [pt]."""
     segments, colours, widths = [], [], []
-    words = type_words(design, panel.cells)
-    for word in sorted(set(words)):
-        lines_inside = pattern(design, word)
-        chosen = np.array([word == other for other in words])
-        if not len(pattern) or not chosen.any():
+    words = np.array(type_words(design, panel.cells))
+    for word in np.unique(words):
+        drawn = pattern(design, str(word))
+        if not len(drawn):
             continue
-        places = np.broadcast_to(
-            pattern.reshape(1, -1, 2), (int(chosen.sum()), pattern.size // 2, 2)
-        )
-        lines = _inside(quads[panel.cells[chosen]], places).reshape(-1, 2, 2)
-        segments.append(lines)
+        chosen = np.flatnonzero(words == word)
+        places = np.broadcast_to(drawn.reshape(-1, 2), (len(chosen), 2 * len(drawn), 2))
+        segments.append(_inside(quads[chosen], places).reshape(-1, 2, 2))
         # Dark lines on light shades and the other way round.
-        dark = shades[levels[chosen], :3].mean(axis=1) > 0.55
-        ink = np.where(dark[:, None], to_rgba(style.INK), to_rgba("white"))
-        colours.append(np.repeat(ink, len(pattern), axis=0))
-        widths.append(np.repeat(np.clip(sides[chosen] / 32, 0.15, 0.6), len(pattern)))
+        light = fills[chosen, :3].mean(axis=1) > 0.55
+        ink = np.where(light[:, None], to_rgba(style.INK), to_rgba("white"))
+        colours.append(np.repeat(ink, len(drawn), axis=0))
+        widths.append(np.repeat(np.clip(sides[chosen] / 32, 0.15, 0.6), len(drawn)))
     if segments:
         axes.add_collection(
             LineCollection(

@@ -44,7 +44,7 @@ def place_labels(
         half = np.array([0.28 * size * len(text), 0.55 * size])
         near = around[np.all(np.abs(around - target) < 2 * half + gap + 8, axis=1)]
         best, best_cost = np.zeros(2), np.inf
-        for reach in (gap, 1.8 * gap, 3.0 * gap):
+        for reach in (gap, 1.4 * gap, 1.9 * gap, 3.0 * gap):
             for turn in _TURNS:
                 way = np.array([np.cos(heading + turn), np.sin(heading + turn)])
                 # Beside the point a text starts or ends there; above and below it is centred.

@@ -46,6 +46,21 @@ impl SymmetricMatrix {
         self.diagonal.len()
     }
 
+    /// Starts of rows and columns in them, ascending, each once and the diagonal among them: `amd` counts on that.
+    fn pattern(&self) -> (Vec<i64>, Vec<i64>) {
+        let mut starts = vec![0];
+        let mut columns = Vec::with_capacity(self.columns.len() + self.size());
+        for row in 0..self.size() {
+            let mut places: Vec<i64> = self.row(row).map(|(column, _)| column as i64).collect();
+            places.push(row as i64);
+            places.sort_unstable();
+            places.dedup();
+            columns.extend(places);
+            starts.push(columns.len() as i64);
+        }
+        (starts, columns)
+    }
+
     fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[row] as usize..self.starts[row + 1] as usize;
         range.map(|at| (self.columns[at] as usize, self.values[at]))
@@ -76,8 +91,8 @@ const ROOT: u32 = u32::MAX;
 impl Symbolic {
     /// Orders a matrix and counts the entries of its factor.
     pub fn new(matrix: &SymmetricMatrix) -> Symbolic {
-        let order =
-            amd::order(matrix.size() as i64, &matrix.starts, &matrix.columns, &amd::Control::default());
+        let (starts, columns) = matrix.pattern();
+        let order = amd::order(matrix.size() as i64, &starts, &columns, &amd::Control::default());
         // A refused pattern can't occur (starts ascend, columns are in range); the given order is valid anyway.
         let order = match order {
             Ok((order, _, _)) => order.into_iter().map(|row| row as u32).collect(),
