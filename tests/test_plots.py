@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import shutil
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import cast
+from xml.etree import ElementTree
 
 import matplotlib as mpl
 import numpy as np
@@ -14,9 +14,8 @@ import pytest
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 
-from springform import design_file, plots, scenes
-from springform.design import Design, load
-from springform.design_file import CellTypeDefinition, ForestSection
+from springform import plots, scenes
+from springform.design import load, save
 from springform.evolution import evolve
 from springform.files import WriteError
 from springform.plots import style
@@ -47,16 +46,10 @@ def assert_shows_something(files: list[Path], folder: Path, expected: list[str])
             assert not edge.any(), file
 
 
-def changed(scene: str, **update: Any) -> Design:
-    return Design(design_file.DesignFile.model_validate(
-        scenes.load_scene(scene).model_copy(update=update)
-    ))  # fmt: skip
-
-
 @pytest.fixture(scope="module")
 def evolved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("runs") / "run"
-    evolve(load("sheet"), out=folder, population=6, generations=4, seed=3, threads=1)
+    evolve(load("canopy"), out=folder, population=6, generations=4, seed=3, threads=1)
     return folder
 
 
@@ -78,13 +71,17 @@ def test_same_bytes_whatever_the_settings(tmp_path: Path) -> None:
 
 def test_every_cell_type_and_turn(tmp_path: Path) -> None:
     words = ["0", "1", "2", "3", "3@1", "4", "4@1", "5", "6", "star", "star@3"]
-    cells = {number: word for number, word in enumerate(words)}
+    cells = dict(enumerate(words))
     cells[40] = f"1({' '.join(words[:3])} 1({' '.join(words[5:9])}))"
-    star = CellTypeDefinition(springs=("c0-x", "x-m1"), perimeter=True)
-    forest = ForestSection(type=1, cells=cells)
-    design = changed("one-cylinder-quad", cell_types={"star": star}, forest=forest)
+    plain = tmp_path / "plain.toml"
+    save(load("one-cylinder-quad"), plain)
+    file = tmp_path / "types.toml"
+    lines = [f'{number} = "{word}"' for number, word in cells.items()]
+    star = '[cell_types.star]\nsprings = ["c0-x", "x-m1"]\nperimeter = true'
+    file.write_text("\n".join([plain.read_text(), "[forest.cells]", *lines, star]))
+    design, folder = load(file), tmp_path / "pictures"
     assert set(design.cells.types) == {*"0123456", "star"}
-    assert_shows_something(plots.plot_design(design, tmp_path), tmp_path, DESIGN_FILES)
+    assert_shows_something(plots.plot_design(design, folder), folder, DESIGN_FILES)
 
 
 @pytest.mark.filterwarnings("error")

@@ -288,7 +288,7 @@ def evolve_command(
         "population": population,
         "generations": generations,
         "seed": seed,
-        "types": [kind.strip() for kind in types.split(",")] if types is not None else None,
+        "types": types,
         "weighting": weighting,
         "weight_base": weight_base,
         "weight_exponent": weight_exponent,
@@ -344,6 +344,7 @@ def show(
     as_json: Json = False,
 ) -> None:
     """Rebuild any individual that a run ever evaluated, as a design."""
+    _check_writable(out)
     found = open_run(run)
     design = found.individual(generation, individual)
     row = (generation - 1) * found.parameters.population + individual
@@ -404,6 +405,8 @@ def _check_writable(path: Path) -> None:
         raise WriteError("must end in .toml or .json", file=path)
     if not path.parent.is_dir():
         raise WriteError(f"the folder {path.parent} does not exist; make it first", file=path)
+    if path.name == "design.toml" and is_run(path.parent):
+        raise WriteError("is what a run started from; choose another file", file=path)
 
 
 class _Pace(ProgressColumn):
@@ -431,6 +434,8 @@ def _progress(what: str) -> Iterator[Progress]:
         except BaseException:
             # What went wrong is said on one line, without a bar beside it.
             progress.live.transient = True
+            progress.live.stop()
+            progress.disable = True
             raise
 
 

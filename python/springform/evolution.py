@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -66,7 +67,7 @@ def evolve(
     keeper = tempfile.TemporaryDirectory(prefix="springform-") if out is None else None
     folder = out if keeper is None else os.path.join(keeper.name, "run")
     assert folder is not None
-    with create(folder, design, checked, list(evolution.start)) as writer:
+    with create(folder, design, checked, evolution.start) as writer:
         writer.log(f"started with {checked.model_dump_json()}")
         _advance(evolution, checked, writer, on_generation)
     run = _finished(folder)
@@ -87,18 +88,19 @@ def resume(
     `generations` is a new number of generations to end at. A run that is at its end stays as it is.
     Raises `RunError`: no run, a broken one, or one that another process drives.
     """
-    run = folder if isinstance(folder, Run) else open_run(folder)
-    parameters = run.parameters
-    if generations is not None:
-        changed = parameters.model_dump() | {"generations": generations}
-        parameters = checked_parameters(changed, run.design.file.method)
-    with reopen(run) as writer:
+    path = folder.folder if isinstance(folder, Run) else Path(folder)
+    threads = _threads(threads)
+    with reopen(path) as (run, writer):
+        parameters = run.parameters
+        if generations is not None:
+            changed = parameters.model_dump() | {"generations": generations}
+            parameters = checked_parameters(changed, run.design.file.method)
         if parameters != run.parameters:
             writer.change(run.generations, {"generations": generations})
         writer.log(f"resumed after generation {run.generations}")
-        evolution = run.evolution(run.generations, threads=_threads(threads))
+        evolution = run.evolution(run.generations, threads=threads)
         _advance(evolution, parameters, writer, on_generation)
-    return _finished(run.folder)
+    return _finished(path)
 
 
 @dataclass(frozen=True)
@@ -132,16 +134,13 @@ def seek(
     Yields every step; ends after `steps`, at a condition, or when no cell can be divided.
     Raises `InputError`: a type that the method does not allow, or a design that gives no net.
     """
+    checked_parameters({"until_differential": until_differential, "until_suf": until_suf})
     design.network()
-    try:
-        kind = design.setting.cell_type(str(type))
-        seeking = _core.StressSeeking(design.setting, design.closed.forest)
-    except _core.CoreError as error:
-        key, problem = error.args
-        raise InputError(problem, key=key) from None
+    kind = _refused(lambda: design.setting.cell_type(str(type)))
+    seeking = _refused(lambda: _core.StressSeeking(design.setting, design.closed.forest))
     now = design.closed
     for step in range(1, steps + 1):
-        edits = seeking.advance(kind)
+        edits = _refused(lambda: seeking.advance(kind))
         if not edits:
             return
         now = now.edited(edits)
@@ -151,6 +150,14 @@ def seek(
         )
         if seeking.reached(step, None, until_differential, until_suf):
             return
+
+
+def _refused(make: Callable[[], Any]) -> Any:
+    try:
+        return make()
+    except _core.CoreError as error:
+        key, problem = error.args
+        raise InputError(problem, key=key) from None
 
 
 def _finished(folder: str | os.PathLike[str]) -> Run:

@@ -7,6 +7,7 @@ import errno
 import os
 import secrets
 import stat
+from pathlib import Path
 
 from .errors import InputError
 
@@ -50,6 +51,13 @@ def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
         else:
             message = explain(error)
         raise WriteError(f"cannot be written: {message}", file=path) from error
+
+
+def remove_temporary(folder: str | os.PathLike[str]) -> None:
+    """Remove what a process that was killed while it wrote left in a folder."""
+    for path in Path(folder).glob(".springform-*.tmp"):
+        with contextlib.suppress(OSError):
+            path.unlink()
 
 
 def read_text(path: str | os.PathLike[str], kind: type[InputError] = InputError) -> str:

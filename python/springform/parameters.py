@@ -16,6 +16,7 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .wording import nearest
 
 Weighting = Literal["unweighted", "linear", "exponential", "deep", "stress"]
 DEFAULT_TYPES = {
@@ -114,11 +115,23 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
     given = dict(values)
     if given.get("types") is None:
         given["types"] = DEFAULT_TYPES[method]
-    given["types"] = tuple(str(kind) for kind in given["types"])
+    given["types"] = _listed(given["types"])
     try:
         return Parameters(**given)
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        key = ".".join(str(part) for part in fault["loc"])
-        problem = fault["msg"].removeprefix("Value error, ")
-        raise InputError(f"{problem}, not {fault['input']!r}", key=key) from None
+    key = ".".join(str(part) for part in fault["loc"])
+    if fault["type"] == "extra_forbidden":
+        raise InputError(f"unknown parameter; {nearest(key, Parameters.model_fields)}", key=key)
+    problem = fault["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+    raise InputError(f"{problem}, not {fault['input']!r}", key=key)
+
+
+def _listed(types: Any) -> tuple[str, ...]:
+    """Types as one text with commas, as one number, or as a list."""
+    if isinstance(types, (str, int)):
+        types = str(types).split(",")
+    try:
+        return tuple(str(kind).strip() for kind in types)
+    except TypeError:
+        raise InputError(f"must be a list of cell types, not {types!r}", key="types") from None

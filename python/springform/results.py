@@ -19,7 +19,8 @@ from .network import Equilibrium
 def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: Path) -> list[Path]:
     """Write design.toml, nodes.csv, springs.csv, measures.json and net.obj; return their paths.
 
-    Lengths in m, forces in N, stiffness in N/m. Raises `WriteError`: the folder can't be written.
+    Lengths in m, forces in N, stiffness in N/m. Results that are there are replaced. Raises
+    `WriteError`: the folder can't be written, or holds other files of these names.
     """
     network = design.network()
     anchors = dict(zip(design.anchors.tolist(), design.anchor_names, strict=True))
@@ -51,6 +52,12 @@ def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: 
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise WriteError(f"can't be made: {explain(error)}", file=folder) from None
+    # Beside measures.json the files are earlier results; elsewhere they are somebody's work.
+    taken = [name for name in contents if (folder / name).exists()]
+    if taken and "measures.json" not in taken:
+        raise WriteError(
+            "exists and is no earlier result; choose another folder", file=folder / taken[0]
+        )
     for name, text in contents.items():
         write_atomically(folder / name, text.encode())
     return [folder / name for name in contents]

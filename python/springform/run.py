@@ -25,25 +25,77 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from . import _core
 from .design import Design, load, save
 from .errors import InputError, RunError
-from .files import WriteError, explain, read_text, write_atomically
+from .files import WriteError, explain, read_text, remove_temporary, write_atomically
 from .network import TOLERANCE
-from .parameters import Parameters, checked_parameters
+from .parameters import Parameters, Weighting, checked_parameters
 
 VERSION = 1
 """Version of the run folder's format."""
 
 Table = dict[str, NDArray[Any]]
 """Columns by name, one row an individual in order of generation and index; undefined is NaN."""
+
+_FORCES = [f"force_{name}" for name in ("min", "max", "mean", "deviation", "variation", "range")]
+_SIZES = ["total_length", "load_path", "area", "shortest_spring", "length_per_area", "residual"]
+SCHEMA = pa.schema(
+    dict.fromkeys(["generation", "individual", "springs", "nodes", "cells"], pa.uint32())
+    | dict.fromkeys(["force_differential", "suf", *_FORCES, *_SIZES], pa.float64())
+    | {"valid": pa.bool_(), "edits": pa.uint32(), "fingerprint": pa.uint64()}
+)
+"""Columns of the files of measures; undefined is null. Units as in `Measures`."""
+
+_Count = Annotated[int, Field(ge=0, lt=2**32)]
+_Amount = tuple[bool, Annotated[float, Field(ge=0)]]
+_Strategy = tuple[_Amount, _Amount, _Amount, Weighting]
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class _Settings(_Record):
+    springform_run: int
+    versions: dict[str, str]
+    tolerance: float
+    design: str
+    """SHA-256 of design.toml."""
+    start: tuple[_Count, float | None]
+    """Springs and force differential of the start."""
+    parameters: dict[str, Any]
+
+
+class _Generation(_Record):
+    """A line of the journal: what a generation chose as its parent."""
+
+    generation: _Count
+    parent: _Count | None
+    springs: _Count
+    force_differential: float | None
+    suf: float | None
+    strategy: _Strategy
+    edits: list[str]
+
+
+class _Change(_Record):
+    """A line of the journal: parameters that hold from a generation on."""
+
+    generation: _Count
+    parameters: dict[str, Any]
+
+
+_Line = _Generation | _Change
+_LINE: TypeAdapter[_Line] = TypeAdapter(_Line)
 
 
 class Run:
@@ -56,26 +108,27 @@ class Run:
         """Open a run folder. Raises `RunError`: it holds no run, or a broken one."""
         self.folder = Path(folder)
         self._settings = _read_settings(self.folder)
-        self.design = load(self.folder / "design.toml")
+        self.design = _read_design(self.folder, self._settings)
         lines, parts = _read_journal(self.folder), _parts(self.folder)
         self.generations = _complete(lines, parts)
-        self._lines = [line for line in lines if line["generation"] <= self.generations]
+        self._lines = [line for line in lines if line.generation <= self.generations]
         self._parts = [part for part in parts if part[1] <= self.generations]
-        self.parameters = _current_parameters(self._settings, self._lines, self.design)
+        self.parameters = self._current_parameters()
 
     @property
     def parents(self) -> list[int | None]:
         """Index of the winner of every generation; None where the parent stayed."""
-        return [line["parent"] for line in self._generation_lines]
+        return [line.parent for line in self._chosen]
 
     @property
-    def _generation_lines(self) -> list[dict[str, Any]]:
-        return [line for line in self._lines if "parent" in line]
+    def _chosen(self) -> list[_Generation]:
+        return [line for line in self._lines if isinstance(line, _Generation)]
 
     @cached_property
     def table(self) -> Table:
         """Measures of every individual. Raises `RunError`: a file of measures is broken."""
-        tables = [_read_part(path, first, last) for first, last, path in self._parts]
+        population = self.parameters.population
+        tables = [_read_part(*part, population) for part in self._parts]
         if not tables:
             return {}
         merged = pa.concat_tables(tables)
@@ -89,8 +142,10 @@ class Run:
     def parent(self, generation: int) -> Design:
         """Return the parent chosen in a generation; 0 is the start with its filters applied."""
         self._check_generation(generation, first=0)
-        edits = [edit for line in self._generation_lines[:generation] for edit in line["edits"]]
-        return self.design.closed.edited(edits).renamed(f"{self.design.name} {generation}")
+        edits = [edit for line in self._chosen[:generation] for edit in line.edits]
+        return self.design.closed.edited(edits).renamed(
+            f"{self.design.name}, generation {generation}"
+        )
 
     def individual(self, generation: int, individual: int) -> Design:
         """Rebuild any individual that was ever evaluated. Raises `RunError`: there is no such."""
@@ -100,21 +155,23 @@ class Run:
             raise RunError(f"there is no individual {individual}; there are 0 to {last}")
         parent = self.parent(generation - 1)
         edits = self.evolution(generation - 1, threads=1).individual(individual)
-        return parent.edited(edits).renamed(f"{self.design.name} {generation}/{individual}")
+        return parent.edited(edits).renamed(
+            f"{self.design.name}, generation {generation}, individual {individual}"
+        )
 
     @property
     def start(self) -> dict[str, Any]:
         """Springs, force differential and SUF of the start."""
-        springs, differential = self._settings["start"]
+        springs, differential = self._settings.start
         return {"springs": springs, "force_differential": differential, "suf": None}
 
     @property
     def final(self) -> dict[str, Any]:
         """Springs, force differential and SUF of the final parent."""
-        lines = self._generation_lines
-        if not lines:
+        if not self._chosen:
             return self.start
-        return {name: lines[-1][name] for name in ("springs", "force_differential", "suf")}
+        last = self._chosen[-1]
+        return {name: getattr(last, name) for name in ("springs", "force_differential", "suf")}
 
     @property
     def lowest(self) -> tuple[int, int] | None:
@@ -165,17 +222,25 @@ class Run:
     def evolution(self, generation: int, *, threads: int) -> _core.Evolution:
         """Return the algorithm as it stood after a generation."""
         self._check_generation(generation, first=0)
-        parameters = self.parameters
-        line = self._generation_lines[generation - 1] if generation else {}
-        strategy = line.get("strategy")
-        springs, differential = self._settings["start"]
+        line = self._chosen[generation - 1] if generation else None
         return start_evolution(
             self.parent(generation),
-            parameters,
+            self.parameters,
             threads=threads,
-            strategy=_strategy_from_json(strategy) if strategy else None,
-            resumed=(generation, (springs, differential), line.get("suf")),
+            strategy=line.strategy if line else None,
+            resumed=(generation, self._settings.start, line.suf if line else None),
         )
+
+    def _current_parameters(self) -> Parameters:
+        values = dict(self._settings.parameters)
+        for line in self._lines:
+            if isinstance(line, _Change):
+                values |= line.parameters
+        try:
+            return checked_parameters(values, self.design.file.method)
+        except InputError as error:
+            path = self.folder / "run.json"
+            raise RunError(error.message, file=path, key=f"parameters.{error.key}") from None
 
     def _lowest_row(self) -> int | None:
         differential = self.table.get("force_differential")
@@ -246,7 +311,7 @@ class RunWriter:
     def __init__(self, folder: Path) -> None:
         """Write into a run folder that exists and is locked."""
         self._folder = folder
-        self._waiting: list[tuple[Mapping[str, NDArray[Any]], dict[str, Any]]] = []
+        self._waiting: list[tuple[Mapping[str, NDArray[Any]], _Generation]] = []
 
     def add(self, generation: int, result: Mapping[str, Any], parent: Mapping[str, Any]) -> None:
         """Keep one generation until the next checkpoint."""
@@ -255,15 +320,15 @@ class RunWriter:
             "generation": np.full(count, generation, dtype=np.uint32),
             "individual": np.arange(count, dtype=np.uint32),
         }
-        line = {
-            "generation": generation,
-            "parent": result["winner"],
-            "springs": parent["springs"],
-            "force_differential": parent["force_differential"],
-            "suf": result["suf"],
-            "strategy": result["strategy"],
-            "edits": result["edits"],
-        }
+        line = _Generation(
+            generation=generation,
+            parent=result["winner"],
+            springs=parent["springs"],
+            force_differential=parent["force_differential"],
+            suf=result["suf"],
+            strategy=result["strategy"],
+            edits=result["edits"],
+        )
         self._waiting.append((place | result["columns"], line))
 
     def checkpoint(self) -> None:
@@ -271,30 +336,28 @@ class RunWriter:
         if not self._waiting:
             return
         columns, lines = zip(*self._waiting, strict=True)
-        first, last = lines[0]["generation"], lines[-1]["generation"]
+        first, last = lines[0].generation, lines[-1].generation
 
         def column(name: str) -> pa.Array:
             return pa.array(np.concatenate([rows[name] for rows in columns]), from_pandas=True)
 
-        table = pa.table({name: column(name) for name in columns[0]})
+        table = pa.table([column(name) for name in SCHEMA.names], schema=SCHEMA)
         sink = pa.BufferOutputStream()
-        pq.write_table(table, sink, compression="zstd")
+        pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
         name = f"{first:07}-{last:07}.parquet"
         write_atomically(self._folder / "measures" / name, sink.getvalue().to_pybytes())
-        self._append("journal.jsonl", lines)
+        self._append_text("journal.jsonl", _journal_text(lines))
         self._waiting = []
 
     def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
         """Journal a change of parameters that holds from a generation on."""
-        self._append("journal.jsonl", [{"generation": generation, "parameters": dict(parameters)}])
+        line = _Change(generation=generation, parameters=dict(parameters))
+        self._append_text("journal.jsonl", _journal_text([line]))
 
     def log(self, message: str) -> None:
         """Add a line to the log."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         self._append_text("log.txt", f"{now} {message}\n")
-
-    def _append(self, name: str, lines: Sequence[Mapping[str, Any]]) -> None:
-        self._append_text(name, "".join(f"{json.dumps(line)}\n" for line in lines))
 
     def _append_text(self, name: str, text: str) -> None:
         path = self._folder / name
@@ -315,53 +378,78 @@ class RunWriter:
 
 @contextmanager
 def create(
-    folder: str | os.PathLike[str], design: Design, parameters: Parameters, start: Any
+    folder: str | os.PathLike[str],
+    design: Design,
+    parameters: Parameters,
+    start: tuple[int, float | None],
 ) -> Iterator[RunWriter]:
     """Make a run folder and hold its lock.
 
-    Raises `RunError`: the folder already holds a run. `WriteError`: it can't be written.
+    Raises `RunError`: the folder holds a run, or something else. `WriteError`: it can't be written.
     """
     path = Path(folder)
-    if is_run(path):
-        raise RunError("already holds a run; resume it or choose another folder", file=path)
+    _refuse_run(path)
     try:
-        (path / "measures").mkdir(parents=True, exist_ok=True)
+        path.mkdir(parents=True, exist_ok=True)
+        # Where a run began and died before it was one, there is a lock.
+        in_use = any(path.iterdir()) and not (path / "lock").exists()
     except OSError as error:
         raise WriteError(f"can't be made: {explain(error)}", file=path) from None
+    if in_use:
+        raise RunError("is not empty; choose another folder", file=path)
     with _locked(path):
+        _refuse_run(path)
+        remove_temporary(path)
         if _parts(path) or (path / "journal.jsonl").exists():
             raise RunError("holds the rest of another run; choose another folder", file=path)
+        try:
+            (path / "measures").mkdir(exist_ok=True)
+        except OSError as error:
+            problem = f"can't be made: {explain(error)}"
+            raise WriteError(problem, file=path / "measures") from None
         save(design, path / "design.toml")
-        settings = {
-            "springform_run": VERSION,
-            "versions": {
+        settings = _Settings(
+            springform_run=VERSION,
+            versions={
                 "springform": _core.__version__,
                 "python": platform.python_version(),
                 "numpy": np.__version__,
                 "machine": platform.machine(),
             },
-            "tolerance": TOLERANCE,
-            "start": start,
-            "parameters": parameters.model_dump(mode="json"),
-        }
+            tolerance=TOLERANCE,
+            design=_hash(path / "design.toml"),
+            start=start,
+            parameters=parameters.model_dump(mode="json"),
+        )
         # Last, because a folder with this file counts as a run.
-        write_atomically(path / "run.json", (json.dumps(settings, indent=2) + "\n").encode())
+        text = settings.model_dump_json(indent=2) + "\n"
+        write_atomically(path / "run.json", text.encode())
         yield RunWriter(path)
 
 
 @contextmanager
-def reopen(run: Run) -> Iterator[RunWriter]:
+def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
     """Hold the lock of a run folder, dropping what lies behind its last complete checkpoint.
 
-    Raises `RunError`: another process drives the run. `WriteError`: it can't be written.
+    Raises `RunError`: no run, a broken one, or one that another process drives. `WriteError`: it
+    can't be written.
     """
-    with _locked(run.folder):
-        kept = "".join(f"{json.dumps(line)}\n" for line in run._lines)
-        write_atomically(run.folder / "journal.jsonl", kept.encode())
-        for _, last, path in _parts(run.folder):
+    _read_settings(folder)
+    with _locked(folder):
+        # Read under the lock: until now another process may have gone on with it.
+        run = Run(folder)
+        write_atomically(folder / "journal.jsonl", _journal_text(run._lines).encode())
+        remove_temporary(folder)
+        remove_temporary(folder / "measures")
+        for _, last, path in _parts(folder):
             if last > run.generations:
                 path.unlink(missing_ok=True)
-        yield RunWriter(run.folder)
+        yield run, RunWriter(folder)
+
+
+def _refuse_run(folder: Path) -> None:
+    if is_run(folder):
+        raise RunError("already holds a run; resume it or choose another folder", file=folder)
 
 
 @contextmanager
@@ -385,42 +473,52 @@ def _broken(path: Path, problem: str, line: int | None = None) -> RunError:
     return RunError(f"{problem}; the run folder is damaged, restore it", file=path, line=line)
 
 
-def _read_settings(folder: Path) -> dict[str, Any]:
+def _hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _read_settings(folder: Path) -> _Settings:
     path = folder / "run.json"
     if not path.exists():
         raise RunError("holds no run: run.json is missing", file=folder)
+    text = read_text(path, RunError)
     try:
-        settings = json.loads(read_text(path, RunError))
-        version, start = settings["springform_run"], settings["start"]
-        if not isinstance(settings["parameters"], dict) or len(start) != 2:
-            raise TypeError
-    except (ValueError, KeyError, TypeError, RecursionError):
+        version = json.loads(text)["springform_run"]
+        if version == VERSION:
+            return _Settings.model_validate_json(text)
+    except (ValueError, LookupError, TypeError, RecursionError):
         raise _broken(path, "is no run's settings") from None
-    if version != VERSION:
-        raise RunError(f"has version {version}; this program reads version {VERSION}", file=path)
-    return dict(settings)
+    raise RunError(f"has version {version}; this program reads version {VERSION}", file=path)
 
 
-def _read_journal(folder: Path) -> list[dict[str, Any]]:
+def _read_design(folder: Path, settings: _Settings) -> Design:
+    path = folder / "design.toml"
+    read_text(path, RunError)
+    if _hash(path) != settings.design:
+        raise _broken(path, "is not the design that the run started from")
+    return load(path)
+
+
+def _journal_text(lines: Sequence[_Line]) -> str:
+    return "".join(f"{line.model_dump_json()}\n" for line in lines)
+
+
+def _read_journal(folder: Path) -> list[_Line]:
     path = folder / "journal.jsonl"
     if not path.exists():
         return []
-    text = read_text(path, RunError)
-    # A line without its end was being written when the process died.
-    complete = text[: text.rfind("\n") + 1].splitlines()
-    lines, generation = [], 0
-    for number, row in enumerate(complete, start=1):
+    # What stands after the last line end was being written when the process died.
+    *complete, _ = read_text(path, RunError).split("\n")
+    lines: list[_Line] = []
+    generation = 0
+    for number, text in enumerate(complete, start=1):
         try:
-            line = json.loads(row)
-            if "parent" in line:
-                generation += 1
-                line["edits"], line["springs"], line["suf"], line["force_differential"]
-                if line["generation"] != generation:
-                    raise ValueError
-            elif not isinstance(line["parameters"], dict):
-                raise TypeError
-        except (ValueError, KeyError, TypeError, RecursionError):
+            line = _LINE.validate_json(text)
+        except ValidationError:
             raise _broken(path, "is no line of a journal", number) from None
+        generation += isinstance(line, _Generation)
+        if line.generation != generation:
+            raise _broken(path, f"is not about generation {generation}", number)
         lines.append(line)
     return lines
 
@@ -428,17 +526,17 @@ def _read_journal(folder: Path) -> list[dict[str, Any]]:
 def _parts(folder: Path) -> list[tuple[int, int, Path]]:
     """(first generation, last generation, file) of every file of measures, ascending."""
     parts = []
-    for path in sorted((folder / "measures").glob("*.parquet")):
+    for path in (folder / "measures").glob("*.parquet"):
         first, _, last = path.stem.partition("-")
         if not (first.isdecimal() and last.isdecimal()):
             raise _broken(path, "is no file of measures")
         parts.append((int(first), int(last), path))
-    return parts
+    return sorted(parts)
 
 
-def _complete(lines: Sequence[Mapping[str, Any]], parts: Sequence[tuple[int, int, Path]]) -> int:
+def _complete(lines: Sequence[_Line], parts: Sequence[tuple[int, int, Path]]) -> int:
     """The last generation of which the journal and all measures are there."""
-    journalled = sum("parent" in line for line in lines)
+    journalled = lines[-1].generation if lines else 0
     complete = 0
     for first, last, path in parts:
         if first != complete + 1:
@@ -449,23 +547,15 @@ def _complete(lines: Sequence[Mapping[str, Any]], parts: Sequence[tuple[int, int
     return complete
 
 
-def _current_parameters(
-    settings: Mapping[str, Any], lines: Sequence[Mapping[str, Any]], design: Design
-) -> Parameters:
-    values = dict(settings["parameters"])
-    for line in lines:
-        values |= line.get("parameters", {})
-    return checked_parameters(values, design.file.method)
-
-
-def _read_part(path: Path, first: int, last: int) -> pa.Table:
+def _read_part(first: int, last: int, path: Path, population: int) -> pa.Table:
     try:
-        table = pq.read_table(io.BytesIO(path.read_bytes()))
-        generations = table.column("generation").to_numpy()
-    except (OSError, pa.ArrowException, KeyError):
+        data = io.BytesIO(path.read_bytes())
+        table = pq.read_table(data, page_checksum_verification=True)
+    except (OSError, ValueError, pa.ArrowException):
         raise _broken(path, "is no complete file of measures") from None
-    if len(generations) == 0 or generations[0] != first or generations[-1] != last:
-        raise _broken(path, "holds other generations than its name says")
+    generations = np.repeat(np.arange(first, last + 1), population)
+    if not table.schema.equals(SCHEMA) or not np.array_equal(table["generation"], generations):
+        raise _broken(path, "does not hold what its name says")
     return table
 
 
@@ -474,8 +564,3 @@ def _numpy(column: pa.ChunkedArray) -> NDArray[Any]:
         column = column.fill_null(float("nan"))
     array: NDArray[Any] = column.to_numpy()
     return array
-
-
-def _strategy_from_json(strategy: Any) -> Any:
-    *amounts, weighting = strategy
-    return (*((bool(share), float(number)) for share, number in amounts), weighting)

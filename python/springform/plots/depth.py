@@ -145,33 +145,26 @@ def _panels(design: Design, quads: Floats, parts: NDArray[np.intp]) -> list[_Pan
 
 def _arrangement(panels: list[_Panel]) -> tuple[int, float]:
     """Return a number of columns that shows the parts large, and inches for a unit."""
-    best = (1, 0.0)
+    widest = max(float(panel.size[0]) for panel in panels)
+    units = []
     for columns in range(1, len(panels) + 1):
         rows = [panels[at : at + columns] for at in range(0, len(panels), columns)]
-        widest = max(float(panel.size[0]) for panel in panels)
         tall = sum(max(float(panel.size[1]) for panel in row) for row in rows)
         wide = (_LARGEST_WIDTH - 2 * _MARGIN - _BESIDE * (columns - 1)) / columns
-        high = (
-            _LARGEST_HEIGHT
-            - _HEAD
-            - _FOOT
-            - 2 * _LINE
-            - len(rows) * _NAME
-            - _BESIDE * (len(rows) - 1)
-        )
-        unit = min(wide / max(widest, 1e-9), max(high, 1.0) / max(tall, 1e-9))
-        # Twice the columns on half the paper are worth a little size.
-        if unit > best[1] * 0.85:
-            best = (columns, max(unit, 1e-9))
-    return best
+        high = _LARGEST_HEIGHT - _HEAD - _FOOT - 2 * _LINE
+        high -= len(rows) * _NAME + _BESIDE * (len(rows) - 1)
+        units.append(min(max(wide, 0.1) / max(widest, 1e-9), max(high, 1.0) / max(tall, 1e-9)))
+    # Twice the columns on half the paper are worth a little size.
+    columns = max(at for at, unit in enumerate(units, start=1) if unit >= 0.85 * max(units))
+    return columns, units[columns - 1]
 
 
 def _facts(design: Design, levels: int) -> str:
+    framework = design.file.framework
+    sideways = "around" if framework.cylinders else "across"
     words = [
         f"{style.count(len(design.cells.addresses), 'cell')} by level, deepest {levels - 1}",
-        "as drawn"
-        if design.file.framework.mesh
-        else "unrolled: around to the right, along upwards",
+        "as drawn" if framework.mesh else f"unrolled: {sideways} to the right, along upwards",
     ]
     return "  ·  ".join(words)
 

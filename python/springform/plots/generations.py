@@ -49,7 +49,7 @@ def generations_figure(run: Run) -> Figure:
         _draw_panel(axes, line, bands)
         axes.set_title(name, loc="left", fontsize=style.TEXT, fontweight="bold", pad=5)
         axes.set_xlim(0, max(run.generations, 1))
-        axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+        axes.xaxis.set_major_locator(MaxNLocator(8, integer=True, steps=[1, 2, 5, 10]))
         axes.tick_params(axis="x", labelbottom=last)
         if last:
             axes.set_xlabel("generation")

@@ -152,6 +152,6 @@ def _add_generations(figure: Figure, generations: int) -> None:
     bar_axes = style.add_axes(figure, _WIDTH - _RIGHT - 2.2, _HEIGHT - 0.72, 2.2, 0.08)
     bar = figure.colorbar(colours, cax=bar_axes, orientation="horizontal")
     bar.outline.set_visible(False)
-    bar_axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    bar_axes.xaxis.set_major_locator(MaxNLocator(4, integer=True, steps=[1, 2, 5, 10]))
     bar_axes.tick_params(length=2.5, pad=2)
     bar_axes.set_title("generation", loc="left", fontsize=style.SMALL, color=style.GREY, pad=3)

@@ -171,7 +171,7 @@ def force_norm(forces: NDArray[np.float64]) -> Normalize:
     """
     finite = forces[np.isfinite(forces)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    if high > 0 and low < high / 5:
+    if finite.size and high > 0 and low < high / 5:
         positive = finite[finite >= high * 1e-4]
         return LogNorm(float(positive.min()), high, clip=True)
     if not low < high:

@@ -14,7 +14,7 @@ const TRANSVERSE_FLOOR: f64 = 1e-6;
 pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
     let free = FreeNodes::new(&network.fixed);
     let mut positions = start(network, settings);
-    let mut energy = potential(network, &positions);
+    let mut energy = Potential::new(network, &positions);
     let mut iterations = 0;
     loop {
         let result = Equilibrium::at(network, positions, Status::Converged, iterations);
@@ -47,15 +47,25 @@ fn start(network: &Network<'_>, settings: &Settings) -> Vec<Vector> {
 }
 
 /// Potential energy [J] of springs and dead loads.
-fn potential(network: &Network<'_>, positions: &[Vector]) -> f64 {
-    let springs: f64 = network
-        .lengths(positions)
-        .into_iter()
-        .enumerate()
-        .map(|(s, length)| 0.5 * network.stiffness[s] * (length - network.rest_length[s]).powi(2))
-        .sum();
-    let loads: f64 = network.loads.iter().zip(positions).map(|(&load, &position)| dot(load, position)).sum();
-    springs - loads
+#[derive(Clone, Copy)]
+struct Potential {
+    energy: f64,
+    /// Rounding of `energy`: its terms may be far larger than their sum.
+    noise: f64,
+}
+
+impl Potential {
+    fn new(network: &Network<'_>, positions: &[Vector]) -> Potential {
+        let lengths = network.lengths(positions).into_iter().enumerate();
+        let stretch = |(spring, length): (usize, f64)| {
+            0.5 * network.stiffness[spring] * (length - network.rest_length[spring]).powi(2)
+        };
+        let springs: f64 = lengths.map(stretch).sum();
+        let work = || network.loads.iter().zip(positions).map(|(&load, &position)| dot(load, position));
+        let loads: f64 = work().sum();
+        let size = springs + work().map(f64::abs).sum::<f64>();
+        Potential { energy: springs - loads, noise: 1e-14 * size }
+    }
 }
 
 /// The exact tangent where it is positive definite, else the clamped one.
@@ -121,18 +131,17 @@ fn search(
     free: &FreeNodes,
     positions: &[Vector],
     step: &[Vector],
-    energy: f64,
+    before: Potential,
     slope: f64,
-) -> (Vec<Vector>, f64) {
-    let noise = 1e-14 * energy.abs();
+) -> (Vec<Vector>, Potential) {
     let mut share = 1.0;
     loop {
         let mut moved = positions.to_vec();
         for (&node, &step) in free.nodes.iter().zip(step) {
             moved[node as usize] = add(moved[node as usize], scale(step, share));
         }
-        let reached = potential(network, &moved);
-        if reached <= energy - 1e-4 * share * slope + noise || share < 1e-10 {
+        let reached = Potential::new(network, &moved);
+        if reached.energy <= before.energy - 1e-4 * share * slope + before.noise || share < 1e-10 {
             return (moved, reached);
         }
         share *= 0.5;
