@@ -46,8 +46,8 @@ def _refuse_constant(word: str) -> None:
 def springform(*words: str | Path, **options: Any) -> Result:
     """Run the command in a process of its own; options go to `subprocess.run`."""
     command = [COMMAND, *map(str, words)]
-    options = {"capture_output": True, "text": True, "timeout": 120, "check": False} | options
-    done = subprocess.run(command, **options)
+    options = {"capture_output": True, "text": True, "timeout": 120} | options
+    done = subprocess.run(command, check=False, **options)
     return Result(done.returncode, done.stdout, done.stderr)
 
 

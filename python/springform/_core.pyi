@@ -197,9 +197,7 @@ class Setting:
     ) -> Forest:
         """Make a forest: cells of a type subdivided to a level, but for those in notation."""
 
-    def notation(
-        self, forest: Forest, default: str
-    ) -> tuple[dict[int, str], list[str], list[str]]:
+    def notation(self, forest: Forest, default: str) -> tuple[dict[int, str], list[str], list[str]]:
         """Return the top-level cells that differ from `default`, in notation; added; cut."""
 
     def edited(self, forest: Forest, edits: list[str]) -> Forest:
@@ -389,4 +387,3 @@ class StressSeeking:
     @property
     def measures(self) -> _Measures:
         """Measures now."""
-

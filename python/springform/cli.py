@@ -78,6 +78,8 @@ def main() -> None:
     try:
         code = app(sys.argv[1:] or ["--help"], standalone_mode=False) or 0
         sys.stdout.flush()
+        if code == INTERRUPTED:
+            _say("springform: interrupted")
     except typer.TyperException as error:
         code = _refuse(error.format_message())
     except SpringformError as error:
@@ -87,10 +89,14 @@ def main() -> None:
         code = _refuse(f"{where}{explain(error)}")
     except typer.Exit as request:
         code = request.exit_code
-    except (typer.Abort, KeyboardInterrupt):
-        _say("springform: interrupted")
+    except _InterruptedError as error:
+        _say(f"springform: interrupted; {error}")
         code = INTERRUPTED
     sys.exit(code)
+
+
+class _InterruptedError(Exception):
+    """Says how to go on."""
 
 
 def _refuse(message: str) -> int:
@@ -368,11 +374,8 @@ def plot_command(
 
     folder = is_run(source) or os.path.isdir(source)
     subject = open_run(source) if folder else load(source)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise WriteError(f"can't be made: {explain(error)}", file=out) from None
     if isinstance(subject, Run):
+        _ = subject.table  # a damaged run is refused before a picture is drawn
         paths = plots.plot_run(subject, out)
     else:
         paths = plots.plot_design(subject, out)
@@ -449,8 +452,7 @@ def _drive(run: Callable[[OnGeneration], Run], folder: Path, total: int, done: i
     try:
         return _with_progress(run, total, done)
     except KeyboardInterrupt:
-        _say(f"springform: interrupted; {go_on if is_run(folder) else 'the run had not begun'}")
-        raise typer.Exit(INTERRUPTED) from None
+        raise _InterruptedError(go_on if is_run(folder) else "the run had not begun") from None
     except WriteError as error:
         if not is_run(folder):
             raise

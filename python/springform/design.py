@@ -251,7 +251,9 @@ class Design:
         return Design(file, source=self._source)
 
     def renamed(self, name: str) -> Design:
-        """Return the design under another name."""
+        """Return the design under another name. Raises `DesignError`: not one line of text."""
+        if not name.strip() or not name.isprintable():
+            raise DesignError("must be a text on one line", key="name")
         file = self.file.model_copy(update={"name": name})
         other = Design(file, source=self._source, setting=self.setting, forest=self.forest)
         other._mesh = self._mesh

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -107,7 +108,10 @@ def solve(
     """
     if solver not in _ITERATIONS:
         raise InputError(f"unknown solver '{solver}'; use direct or implicit-euler", key="solver")
+    _check("tolerance", tolerance)
     limit = _ITERATIONS[solver] if iterations is None else iterations
+    if not 0 <= limit < 2**31:
+        raise InputError(f"must be 0 to {2**31 - 1}, not {limit}", key="iterations")
     start = time.perf_counter()
     try:
         result = _core.solve(network, tolerance, limit, solver)
@@ -131,6 +135,9 @@ def animate(
     the force against velocity per unit of mass, `growth` a factor on the step after every step.
     Ends once converged. Raises `InputError`: the network is refused.
     """
+    for name, value in {"step": step, "growth": growth, "tolerance": tolerance}.items():
+        _check(name, value)
+    _check("drag", drag, least=0)
     try:
         euler = _core.ImplicitEuler(network, step, growth, drag)
     except _core.CoreError as error:
@@ -149,11 +156,17 @@ def residuals(network: Network) -> Floats:
     return _core.residuals(network)
 
 
+def _check(name: str, value: float, least: float | None = None) -> None:
+    if not math.isfinite(value) or (value <= 0 if least is None else value < least):
+        bound = "above 0" if least is None else f"at least {least}"
+        raise InputError(f"must be finite and {bound}, not {value}", key=name)
+
+
 def _wrong_shape(name: str, shape: tuple[int, ...], expected: str) -> InputError:
     return InputError(f"has shape {shape}, not {expected}", key=name)
 
 
-def _array(name: str, values: ArrayLike, dtype: Any) -> NDArray[Any]:
+def _array(name: str, values: ArrayLike, dtype: Any = None) -> NDArray[Any]:
     try:
         return np.asarray(values, dtype=dtype)
     except (TypeError, ValueError, OverflowError) as error:
@@ -180,7 +193,7 @@ def _numbers(name: str, values: ArrayLike, shape: tuple[int | None, ...]) -> Flo
 
 
 def _node_numbers(name: str, values: ArrayLike, nodes: int) -> NDArray[np.uint32]:
-    array = np.asarray(values)
+    array = _array(name, values)
     if array.size == 0:
         array = array.reshape(0, 2).astype(np.uint32)
     if not np.issubdtype(array.dtype, np.integer):
@@ -191,7 +204,7 @@ def _node_numbers(name: str, values: ArrayLike, nodes: int) -> NDArray[np.uint32
 
 
 def _mask(fixed: ArrayLike, nodes: int) -> NDArray[np.bool_]:
-    array = np.asarray(fixed)
+    array = _array("fixed", fixed)
     if array.dtype == np.bool_:
         if array.shape != (nodes,):
             raise _wrong_shape("fixed", array.shape, f"({nodes},)")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -112,7 +113,10 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
 
     Raises `InputError`: an unknown name or a value that is not allowed.
     """
-    given = dict(values)
+    given = {
+        name: value.item() if isinstance(value, np.generic) else value
+        for name, value in values.items()
+    }
     if given.get("types") is None:
         given["types"] = DEFAULT_TYPES[method]
     given["types"] = _listed(given["types"])

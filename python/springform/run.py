@@ -266,7 +266,10 @@ def open_run(folder: str | os.PathLike[str]) -> Run:
 
 def is_run(folder: str | os.PathLike[str]) -> bool:
     """Whether a folder holds a run."""
-    return (Path(folder) / "run.json").is_file()
+    try:
+        return (Path(folder) / "run.json").is_file()
+    except (OSError, ValueError):
+        return False  # a path that no file can have
 
 
 def start_evolution(
@@ -393,7 +396,7 @@ def create(
         path.mkdir(parents=True, exist_ok=True)
         # Where a run began and died before it was one, there is a lock.
         in_use = any(path.iterdir()) and not (path / "lock").exists()
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise WriteError(f"can't be made: {explain(error)}", file=path) from None
     if in_use:
         raise RunError("is not empty; choose another folder", file=path)
@@ -438,6 +441,7 @@ def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
     with _locked(folder):
         # Read under the lock: until now another process may have gone on with it.
         run = Run(folder)
+        _check(run)
         write_atomically(folder / "journal.jsonl", _journal_text(run._lines).encode())
         remove_temporary(folder)
         remove_temporary(folder / "measures")
@@ -445,6 +449,11 @@ def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
             if last > run.generations:
                 path.unlink(missing_ok=True)
         yield run, RunWriter(folder)
+
+
+def _check(run: Run) -> None:
+    """Read all that is there, so that a damaged run is refused before work is put into it."""
+    _ = run.table, run.best
 
 
 def _refuse_run(folder: Path) -> None:
@@ -479,7 +488,7 @@ def _hash(path: Path) -> str:
 
 def _read_settings(folder: Path) -> _Settings:
     path = folder / "run.json"
-    if not path.exists():
+    if not is_run(folder):
         raise RunError("holds no run: run.json is missing", file=folder)
     text = read_text(path, RunError)
     try:

@@ -22,7 +22,8 @@ impl Amount {
     pub fn of(self, candidates: usize) -> usize {
         match self {
             Amount::Count(count) => count.round() as usize,
-            Amount::Share(share) => (share * candidates as f64).ceil() as usize,
+            // 7 % of 100 is 7, though 0.07 × 100 is a little more.
+            Amount::Share(share) => (share * candidates as f64 * (1.0 - 1e-12)).ceil() as usize,
         }
     }
 

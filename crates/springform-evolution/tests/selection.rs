@@ -32,7 +32,8 @@ fn subdivisions(weighting: Weighting, seed: u64, steps: u64) -> Vec<u32> {
     let catalogue = Catalogue::default();
     let palette = Palette { types: &[QUAD], catalogue: &catalogue, weights: &PLAIN };
     let nothing = Amount::Count(0.0);
-    let strategy = Strategy { insertions: Amount::Count(1.0), switches: nothing, toggles: nothing, weighting };
+    let strategy =
+        Strategy { insertions: Amount::Count(1.0), switches: nothing, toggles: nothing, weighting };
     let mut counts = vec![0; 8];
     for step in 0..steps {
         let candidates = Candidates::new(&forest, &[]);
@@ -67,7 +68,9 @@ proptest! {
     /// No item twice, none of weight zero, as many as asked for or all there are.
     #[test]
     fn draws_are_different_and_have_weight(
-        weights in vec(prop_oneof![Just(0.0), 1e-12..1e12f64, 0.5..2.0f64], 0..60), count in 0usize..70, seed: u64
+        weights in vec(prop_oneof![Just(0.0), 1e-12..1e12f64, 0.5..2.0f64], 0..60),
+        count in 0usize..70,
+        seed: u64,
     ) {
         let drawn = draw_without_replacement(&weights, count, &mut Draws::new(seed, 1, 2));
         let mut once = drawn.clone();
@@ -136,7 +139,9 @@ fn draws_without_replacement_have_their_probabilities() {
     let total: f64 = weights.iter().sum();
     let (mut pairs, mut probabilities) = (Vec::new(), Vec::new());
     for first in 0..5 {
-        for second in (0..5).filter(|&second| second != first && weights[first] > 0.0 && weights[second] > 0.0) {
+        for second in
+            (0..5).filter(|&second| second != first && weights[first] > 0.0 && weights[second] > 0.0)
+        {
             pairs.push(vec![first, second]);
             probabilities.push(weights[first] / total * weights[second] / (total - weights[first]));
         }
@@ -174,7 +179,8 @@ fn exponential_weighting_subdivides_top_level_cells_alike() {
 #[test]
 fn without_weights_the_subdivided_are_subdivided_more() {
     let spread = |weighting| -> f64 {
-        (0..20).map(|seed| chi_square(&subdivisions(weighting, seed, 200), &[1.0 / 8.0; 8])).sum::<f64>() / 20.0
+        (0..20).map(|seed| chi_square(&subdivisions(weighting, seed, 200), &[1.0 / 8.0; 8])).sum::<f64>()
+            / 20.0
     };
     let (unweighted, exponential) = (spread(Weighting::Unweighted), spread(Weighting::Exponential));
     // Independent draws spread by the degrees of freedom, 7.

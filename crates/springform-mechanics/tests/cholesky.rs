@@ -6,7 +6,7 @@ use nets::common::cases;
 use nets::eliminate;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use springform_mechanics::equilibrium::cholesky::{Factor, NotPositiveDefinite, SymmetricMatrix, Symbolic};
+use springform_mechanics::equilibrium::cholesky::{Factor, NotPositiveDefinite, Symbolic, SymmetricMatrix};
 
 /// A symmetric matrix given twice: dense, and as diagonal and entries of one triangle.
 #[derive(Clone, Debug)]
@@ -67,7 +67,9 @@ proptest! {
 
     /// Solutions are those of dense elimination, for several sides at once.
     #[test]
-    fn agrees_with_dense_elimination(given in positive_definite(), sides in vec([-5.0..5.0f64, -5.0..5.0], 40)) {
+    fn agrees_with_dense_elimination(
+        given in positive_definite(), sides in vec([-5.0..5.0f64, -5.0..5.0], 40),
+    ) {
         let sides = sides[..given.diagonal.len()].to_vec();
         let factor = Factor::new(&given.sparse()).expect("a positive definite matrix");
         let mut found = sides.clone();

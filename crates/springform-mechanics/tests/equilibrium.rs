@@ -110,7 +110,8 @@ proptest! {
         for node in (0..moved.positions.len()).filter(|&node| !net.network.fixed[node]) {
             moved.positions.to_mut()[node] = elsewhere[node % elsewhere.len()];
         }
-        let (first, second) = (solve(&net.network, &Settings::default()), solve(&moved, &Settings::default()));
+        let (first, second) =
+            (solve(&net.network, &Settings::default()), solve(&moved, &Settings::default()));
         prop_assert_eq!(first.positions, second.positions);
         prop_assert_eq!(first.forces, second.forces);
     }
@@ -143,7 +144,8 @@ proptest! {
         let rounding = 1e-10 * net.extent();
         for axis in 0..3 {
             let lowest = anchors.iter().map(|anchor| anchor[axis]).fold(f64::INFINITY, f64::min) - rounding;
-            let highest = anchors.iter().map(|anchor| anchor[axis]).fold(f64::NEG_INFINITY, f64::max) + rounding;
+            let highest =
+                anchors.iter().map(|anchor| anchor[axis]).fold(f64::NEG_INFINITY, f64::max) + rounding;
             for position in solved(&net.network) {
                 prop_assert!((lowest..=highest).contains(&position[axis]));
             }
@@ -158,7 +160,9 @@ proptest! {
 
     /// Springs in a row share the way by their stiffness; alike, they space their nodes evenly.
     #[test]
-    fn chains_share_the_way_by_stiffness(stiffness in vec(0.1..10.0f64, 1..60), end in point(), uniform: bool) {
+    fn chains_share_the_way_by_stiffness(
+        stiffness in vec(0.1..10.0f64, 1..60), end in point(), uniform: bool,
+    ) {
         prop_assume!(length(end) > 0.1);
         let count = stiffness.len();
         let springs = (0..count as u32).map(|node| [node, node + 1]).collect();
@@ -181,7 +185,9 @@ proptest! {
     /// A sheet whose rim lies on a hyperbolic paraboloid is one inside: every node bilinear, the total force
     /// that of straight lines.
     #[test]
-    fn sheets_on_a_bilinear_rim_are_bilinear(across in 1u32..9, along in 1u32..9, corners in vec(point(), 4)) {
+    fn sheets_on_a_bilinear_rim_are_bilinear(
+        across in 1u32..9, along in 1u32..9, corners in vec(point(), 4),
+    ) {
         let part = Part { name: "s".to_owned(), shape: Shape::Sheet, around: across, along };
         let framework = Framework { grid: Grid::Quad, parts: vec![part], joins: vec![] };
         let mesh = BaseMesh::from_framework(&framework).expect("a valid sheet");
@@ -201,7 +207,8 @@ proptest! {
         };
         let anchors: Vec<u32> = (0..mesh.vertex_count()).filter(on_rim).collect();
         let forest = Forest::new(mesh.faces().len() as u32, Content::QUAD);
-        let expression = express(&mesh, &forest, &Catalogue::default(), Method::Dynamic, &anchors).expect("a net");
+        let expression =
+            express(&mesh, &forest, &Catalogue::default(), Method::Dynamic, &anchors).expect("a net");
         let positions = anchors.iter().map(|&vertex| target(vertex)).collect();
         let embedding = Embedding::from_anchors(&mesh, &anchors, positions);
         let network = Network::from_expression(&expression, &embedding, SpringLaw::default());
@@ -225,14 +232,18 @@ proptest! {
     #[test]
     fn implicit_euler_agrees(net in nets(10)) {
         let moved = implicit_euler::solve(&net.network, &Settings::default(), Motion::default());
-        prop_assert_eq!(moved.status, Status::Converged, "residual {:e} after {}", moved.residual, moved.iterations);
+        prop_assert_eq!(
+            moved.status, Status::Converged, "residual {:e} after {}", moved.residual, moved.iterations
+        );
         prop_assert!(largest_distance(&moved.positions, &solved(&net.network)) <= 1e-6 * net.extent());
     }
 
     /// Bare networks of any springs end in a status, finite numbers and no panic.
     #[test]
     fn bare_networks_end_in_a_status(
-        positions in vec(point(), 1..12), ends in vec((0u32..12, 0u32..12), 0..24), fixed in vec(0usize..12, 0..4)
+        positions in vec(point(), 1..12),
+        ends in vec((0u32..12, 0u32..12), 0..24),
+        fixed in vec(0usize..12, 0..4),
     ) {
         let count = positions.len() as u32;
         let springs: Vec<[u32; 2]> =

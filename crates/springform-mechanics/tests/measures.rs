@@ -27,7 +27,12 @@ fn part(shape: Shape, around: u32, along: u32) -> BaseMesh {
 }
 
 /// A mesh of cells of one content at equilibrium under the default law.
-fn hung(mesh: &BaseMesh, forest: &Forest, anchors: &[u32], positions: Vec<Vector>) -> (Expression, Network<'static>, Equilibrium) {
+fn hung(
+    mesh: &BaseMesh,
+    forest: &Forest,
+    anchors: &[u32],
+    positions: Vec<Vector>,
+) -> (Expression, Network<'static>, Equilibrium) {
     let expression = express(mesh, forest, &Catalogue::default(), Method::Dynamic, anchors).expect("a net");
     let embedding = Embedding::from_anchors(mesh, anchors, positions);
     let network = Network::from_expression(&expression, &embedding, SpringLaw::default());
@@ -77,7 +82,8 @@ proptest! {
         prop_assert!(measures.force_differential.is_none_or(|found| near(found, most / least)));
         prop_assert!(near(measures.force_range, most - least));
         let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
-        let deviation = (sorted.iter().map(|force| (force - mean) * (force - mean)).sum::<f64>() / sorted.len() as f64).sqrt();
+        let squares: f64 = sorted.iter().map(|force| (force - mean) * (force - mean)).sum();
+        let deviation = (squares / sorted.len() as f64).sqrt();
         prop_assert!(near(measures.force_mean, mean));
         prop_assert!((measures.force_deviation - deviation).abs() <= 1e-7 * most);
         prop_assert!(near(measures.force_variation, measures.force_deviation / mean));
@@ -85,7 +91,9 @@ proptest! {
         prop_assert!(near(measures.load_path, lengths.iter().zip(forces).map(|(l, f)| l * f).sum()));
         prop_assert_eq!(measures.shortest_spring, lengths.iter().copied().fold(f64::INFINITY, f64::min));
         prop_assert!(measures.area >= 0.0);
-        prop_assert!(measures.area == 0.0 || near(measures.length_per_area, measures.total_length / measures.area));
+        prop_assert!(
+            measures.area == 0.0 || near(measures.length_per_area, measures.total_length / measures.area)
+        );
     }
 
     /// Inner forces count every spring once for each of its cells.
@@ -94,7 +102,8 @@ proptest! {
         let (equilibrium, _) = measured(&net);
         let total: f64 = inner_forces(&net.expression, &equilibrium.forces).into_iter().sum();
         let owners = |spring: usize| net.expression.spring_cells.of(spring as u32).len() as f64;
-        let expected: f64 = equilibrium.forces.iter().enumerate().map(|(spring, force)| force * owners(spring)).sum();
+        let expected: f64 =
+            equilibrium.forces.iter().enumerate().map(|(spring, force)| force * owners(spring)).sum();
         prop_assert!((total - expected).abs() <= 1e-9 * expected);
     }
 
@@ -103,12 +112,16 @@ proptest! {
     fn measures_scale(net in nets(12), factor in 0.01..100.0f64) {
         let (_, small) = measured(&net);
         let mut larger = net.clone();
-        larger.network.positions.to_mut().iter_mut().for_each(|position| *position = scale(*position, factor));
+        for position in larger.network.positions.to_mut() {
+            *position = scale(*position, factor);
+        }
         let (_, large) = measured(&larger);
         let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-7 * expected.abs();
         prop_assert!(near(large.total_length, factor * small.total_length));
         prop_assert!(near(large.load_path, factor * factor * small.load_path));
-        prop_assert!((large.area - factor * factor * small.area).abs() <= 1e-7 * (factor * net.extent()).powi(2));
+        prop_assert!(
+            (large.area - factor * factor * small.area).abs() <= 1e-7 * (factor * net.extent()).powi(2)
+        );
         if let (Some(small), Some(large)) = (small.force_differential, large.force_differential) {
             prop_assert!(small > 1e6 || near(large, small));
         }
@@ -116,7 +129,9 @@ proptest! {
 
     /// The apertures of a cylinder between two regular polygons are those polygons.
     #[test]
-    fn apertures_of_regular_polygons(around in 3u32..40, radius in 0.1..10.0f64, axis in point(), centre in point()) {
+    fn apertures_of_regular_polygons(
+        around in 3u32..40, radius in 0.1..10.0f64, axis in point(), centre in point(),
+    ) {
         prop_assume!(length(axis) > 0.5);
         let normal = scale(axis, 1.0 / length(axis));
         let aside = if normal[0].abs() < 0.7 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
@@ -135,10 +150,14 @@ proptest! {
         let forest = Forest::new(around, Content::QUAD);
         let (expression, _, equilibrium) = hung(&mesh, &forest, &anchors, positions);
         let found = apertures(&mesh, &expression, &equilibrium.positions);
-        prop_assert_eq!(found.iter().map(|opening| opening.side).collect::<Vec<_>>(), vec![Side::Start, Side::End]);
+        prop_assert_eq!(
+            found.iter().map(|opening| opening.side).collect::<Vec<_>>(), vec![Side::Start, Side::End]
+        );
         for opening in found {
             prop_assert_eq!(&opening.part, "p");
-            prop_assert!((opening.perimeter - 2.0 * count * radius * (PI / count).sin()).abs() <= 1e-9 * radius);
+            prop_assert!(
+                (opening.perimeter - 2.0 * count * radius * (PI / count).sin()).abs() <= 1e-9 * radius
+            );
             let area = 0.5 * count * radius * radius * (2.0 * PI / count).sin();
             prop_assert!((opening.area - area).abs() <= 1e-9 * radius * radius);
             prop_assert!((dot(opening.normal, normal) - 1.0).abs() <= 1e-9);
@@ -148,7 +167,8 @@ proptest! {
 
 #[test]
 fn four_cells_by_hand() {
-    // Middles of the sides: 3 y = 0 + 0 + 1. So eight springs of √10/3 along the sides and four of 2/3 inside.
+    // Middles of the sides: 3 y = 0 + 0 + 1. So eight springs of √10/3 along the sides and four of 2/3
+    // inside.
     let (measures, inner) = four_cells();
     let (long, short) = (10f64.sqrt() / 3.0, 2.0 / 3.0);
     assert_eq!((measures.springs, measures.nodes, measures.cells), (12, 9, 4));

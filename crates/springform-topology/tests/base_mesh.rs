@@ -81,7 +81,8 @@ fn three_cylinders(grid: Grid, around: u32, along: u32, cord: bool) -> BaseMesh 
 proptest! {
     #![proptest_config(cases(1500))]
 
-    /// V = (l + 1) a, F = l a, E = (2 l + 1) a; on a dia-grid 2 a middles more, F = (l + 1) a, E = 2 l a + 4 a.
+    /// V = (l + 1) a, F = l a, E = (2 l + 1) a; on a dia-grid 2 a middles more, F = (l + 1) a, E = 2 l a + 4
+    /// a.
     #[test]
     fn cylinders_have_closed_counts(grid in grid(), a in 3u32..30, l in 1u32..20) {
         let mesh = mesh(grid, vec![cylinder("c", a, l)], vec![]).expect("a valid cylinder");
@@ -112,16 +113,18 @@ proptest! {
         prop_assert_eq!(euler_characteristic(&mesh), 1);
     }
 
-    /// A chain of cylinders joined ring to ring is a cylinder, closed on itself a torus: χ = 0; every seam without
-    /// a cord takes 4 springs an edge on a dia-grid, one with a cord 2.
+    /// A chain of cylinders joined ring to ring is a cylinder, closed on itself a torus: χ = 0; every seam
+    /// without a cord takes 4 springs an edge on a dia-grid, one with a cord 2.
     #[test]
     fn chains_and_tori_have_no_euler_characteristic(
-        grid in grid(), a in 3u32..12, l in 2u32..6, count in 1usize..4, shift in 0u32..12, closed: bool, cord: bool
+        grid in grid(), a in 3u32..12, l in 2u32..6, count in 1usize..4, shift in 0u32..12, closed: bool,
+        cord: bool
     ) {
         let parts = (0..count).map(|number| cylinder(&format!("c{number}"), a, l)).collect();
         let last = if closed && l > 2 { count } else { count - 1 };
         let seam = |number: usize| {
-            let (above, below) = (arc(number, Side::End, shift % a, a), arc((number + 1) % count, Side::Start, 0, a));
+            let (above, below) =
+                (arc(number, Side::End, shift % a, a), arc((number + 1) % count, Side::Start, 0, a));
             join(above, below, cord)
         };
         let mesh = mesh(grid, parts, (0..last).map(seam).collect()).expect("a valid chain");
@@ -136,7 +139,8 @@ proptest! {
     /// Two cylinders joined along an arc: χ = 0 + 0 − 1. Three as a pair of trousers: the same.
     #[test]
     fn open_seams_cost_one(
-        grid in grid(), quarter in 2u32..5, l in 2u32..5, length in 1u32..5, starts in (0u32..20, 0u32..20), cord: bool,
+        grid in grid(), quarter in 2u32..5, l in 2u32..5, length in 1u32..5,
+        starts in (0u32..20, 0u32..20), cord: bool,
         reversed: bool
     ) {
         let a = 4 * quarter;
@@ -149,7 +153,8 @@ proptest! {
         prop_assert_eq!(euler_characteristic(&three_cylinders(grid, a, l, cord)), -1);
     }
 
-    /// Faces, sides, edges and vertices point at one another; every vertex is in a face; every edge has a face.
+    /// Faces, sides, edges and vertices point at one another; every vertex is in a face; every edge has a
+    /// face.
     #[test]
     fn everything_is_consistent(mut dice in common::dice(90)) {
         let mesh = common::mesh(&mut dice);
@@ -185,7 +190,8 @@ proptest! {
         let edges: BTreeSet<[u32; 2]> = mesh.edges().iter().copied().collect();
         for border in mesh.borders() {
             let part = framework.parts.iter().find(|part| part.name == border.part).expect("a part");
-            let count = part.border_edges(border.side, framework.grid).expect("a border of the part") as usize;
+            let count =
+                part.border_edges(border.side, framework.grid).expect("a border of the part") as usize;
             prop_assert_eq!(border.vertices.len(), if border.closed { count } else { count + 1 });
             for (index, &vertex) in border.vertices.iter().enumerate() {
                 prop_assert_eq!(mesh.border_vertex(&border.part, border.side, index), Some(vertex));
@@ -233,14 +239,17 @@ proptest! {
                 let ((u, v), (next_u, next_v)) = (corners[k], corners[(k + 1) % 4]);
                 u * next_v - next_u * v
             }).sum();
-            prop_assert!(twice == whole || (framework.grid == Grid::Dia && twice == whole / 2), "{corners:?}");
+            prop_assert!(
+                twice == whole || (framework.grid == Grid::Dia && twice == whole / 2), "{corners:?}"
+            );
         }
     }
 
     /// Nonsense is refused, never a panic.
     #[test]
     fn random_frameworks_never_panic(
-        numbers in prop::collection::vec(0u32..9, 24), huge in prop::sample::select(vec![0, 1, 7, 1 << 20, u32::MAX])
+        numbers in prop::collection::vec(0u32..9, 24),
+        huge in prop::sample::select(vec![0, 1, 7, 1 << 20, u32::MAX]),
     ) {
         let sides = [Side::Start, Side::End, Side::Left, Side::Right];
         let some_arc = |at: usize| {
@@ -263,9 +272,12 @@ proptest! {
 
     /// Inside a dia-grid every node has four springs at any level, seams without a cord included.
     #[test]
-    fn dia_grids_are_four_valent_inside(a in 3u32..7, l in 2u32..5, level in 0u8..=2, length in 1u32..3, cord: bool) {
+    fn dia_grids_are_four_valent_inside(
+        a in 3u32..7, l in 2u32..5, level in 0u8..=2, length in 1u32..3, cord: bool,
+    ) {
         let seam = join(arc(0, Side::End, 0, length), arc(1, Side::Start, 0, length), cord);
-        let mesh = mesh(Grid::Dia, vec![cylinder("a", a, l), sheet("b", a, 2 * l)], vec![seam]).expect("a framework");
+        let parts = vec![cylinder("a", a, l), sheet("b", a, 2 * l)];
+        let mesh = mesh(Grid::Dia, parts, vec![seam]).expect("a framework");
         let net = full_net(&mesh, level);
         let mut valence = vec![0; net.nodes.len()];
         let mut on_ring = vec![false; net.nodes.len()];
@@ -277,7 +289,8 @@ proptest! {
         }
         // Vertices on a seam belong to two parts, so they may have more; they are on its two rings' paths.
         let seam: BTreeSet<u32> = [(0, Side::End), (1, Side::Start)].into_iter().flat_map(|(part, side)| {
-            let border = mesh.borders().iter().find(|b| b.part == ["a", "b"][part] && b.side == side).expect("a ring");
+            let border =
+                mesh.borders().iter().find(|b| b.part == ["a", "b"][part] && b.side == side).expect("a ring");
             border.path.clone()
         }).filter_map(|vertex| net.node(springform_topology::node_key::NodeKey::vertex(vertex))).collect();
         for node in 0..net.nodes.len() as u32 {
@@ -289,7 +302,9 @@ proptest! {
 
     /// A full ring joined without a cord disappears: the chain is the longer cylinder, spring for spring.
     #[test]
-    fn a_seam_without_a_cord_leaves_no_trace(a in 3u32..9, first in 1u32..4, second in 1u32..4, level in 0u8..=1) {
+    fn a_seam_without_a_cord_leaves_no_trace(
+        a in 3u32..9, first in 1u32..4, second in 1u32..4, level in 0u8..=1,
+    ) {
         let seam = join(arc(0, Side::End, 0, a), arc(1, Side::Start, 0, a), false);
         let joined = mesh(Grid::Dia, vec![cylinder("a", a, first), cylinder("b", a, second)], vec![seam]);
         let whole = mesh(Grid::Dia, vec![cylinder("c", a, first + second)], vec![]).expect("a cylinder");

@@ -154,7 +154,9 @@ proptest! {
 
     /// Places know their ancestors.
     #[test]
-    fn places_know_what_they_contain(path in prop::collection::vec(0u8..4, 0..=20), level in 0u8..21, child in 0u8..4) {
+    fn places_know_what_they_contain(
+        path in prop::collection::vec(0u8..4, 0..=20), level in 0u8..21, child in 0u8..4,
+    ) {
         let place = path.iter().fold(Place::top(7), |place, &child| place.child(child));
         let ancestor = place.ancestor(level.min(place.level));
         prop_assert!(ancestor.contains(place));
@@ -167,7 +169,9 @@ proptest! {
 
     /// Node keys, read from what was written, are the same, on every kind of place.
     #[test]
-    fn node_keys_are_read_as_written(mut dice in common::dice(90), i in 0..=UNITS, j in 0..=UNITS, coarse in 0u32..=20) {
+    fn node_keys_are_read_as_written(
+        mut dice in common::dice(90), i in 0..=UNITS, j in 0..=UNITS, coarse in 0u32..=20,
+    ) {
         let mesh = common::mesh(&mut dice);
         let face = dice.below(mesh.faces().len() as u32);
         // Coarse coordinates fall on corners and edges often.

@@ -97,8 +97,8 @@ fn faces_reversed(design: &Design) -> Design {
 proptest! {
     #![proptest_config(cases(1500))]
 
-    /// Nodes, springs, rings, owners, boundaries and restored contents are those of the slow net, in which every
-    /// spring has two node-disjoint paths to two different anchors and every spring left out has not.
+    /// Nodes, springs, rings, owners, boundaries and restored contents are those of the slow net, in which
+    /// every spring has two node-disjoint paths to two different anchors and every spring left out has not.
     #[test]
     fn agrees_with_the_slow_net(design in grown_designs(24)) {
         match (expressed(&design), slow_net(&design)) {
@@ -202,13 +202,16 @@ proptest! {
 
     /// A method refuses the types that it does not allow, whatever else the forest holds.
     #[test]
-    fn refuses_types_that_the_method_does_not_allow(mut design in grown_designs(12), at in any::<prop::sample::Index>()) {
+    fn refuses_types_that_the_method_does_not_allow(
+        mut design in grown_designs(12), at in any::<prop::sample::Index>(),
+    ) {
         let cells = leaves(&design.forest);
         let (cell, place) = cells[at.index(cells.len())];
         let from = design.forest.content(cell);
         let to = Content { kind: DYNAMIC, turn: 0 };
         Edit::Retype { cell: place, from, to }.apply(&mut design.forest).expect("an edit that fits");
-        let refused = matches!(expressed(&design), Err(ExpressionError::Type { place: at, .. }) if at == place);
+        let refused =
+            matches!(expressed(&design), Err(ExpressionError::Type { place: at, .. }) if at == place);
         prop_assert_eq!(refused, design.method != Method::Dynamic);
     }
 }

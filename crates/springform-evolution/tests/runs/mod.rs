@@ -10,7 +10,7 @@ pub use nets::common;
 
 use common::{Design, Dice};
 use nets::{Net, nets};
-use proptest::prelude::*;
+use proptest::strategy::Strategy as Values;
 use springform_evolution::evolve::{Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
@@ -22,16 +22,26 @@ use springform_mechanics::network::SpringLaw;
 use springform_topology::cell_type::CellTypeId;
 use springform_topology::filters::Method;
 use springform_topology::forest::Forest;
+use std::fmt;
 
 /// A design that gives a net, as evolution sees it.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Start {
     pub setting: Setting,
     pub forest: Forest,
 }
 
+/// Short enough to read when a property fails.
+impl fmt::Debug for Start {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Setting { mesh, catalogue, method, anchors, .. } = self.setting.clone();
+        let design = Design { mesh, catalogue, method, anchors, forest: self.forest.clone() };
+        write!(formatter, "{design:?}{:?}", self.setting.embedding.anchor_positions)
+    }
+}
+
 /// Designs after up to `edits` random edits.
-pub fn starts(edits: usize) -> impl proptest::strategy::Strategy<Value = Start> {
+pub fn starts(edits: usize) -> impl Values<Value = Start> {
     nets(edits).prop_map(start)
 }
 

@@ -73,7 +73,10 @@ pub fn largest_distance(a: &[Vector], b: &[Vector]) -> f64 {
 }
 
 /// Solves a dense system by elimination with partial pivoting; one row of `sides` a row of the matrix.
-pub fn eliminate<const WIDTH: usize>(mut matrix: Vec<Vec<f64>>, mut sides: Vec<[f64; WIDTH]>) -> Vec<[f64; WIDTH]> {
+pub fn eliminate<const WIDTH: usize>(
+    mut matrix: Vec<Vec<f64>>,
+    mut sides: Vec<[f64; WIDTH]>,
+) -> Vec<[f64; WIDTH]> {
     let size = matrix.len();
     for column in 0..size {
         let pivot = (column..size)
@@ -90,10 +93,11 @@ pub fn eliminate<const WIDTH: usize>(mut matrix: Vec<Vec<f64>>, mut sides: Vec<[
         }
     }
     for row in (0..size).rev() {
-        for side in 0..WIDTH {
-            let known: f64 = (row + 1..size).map(|column| matrix[row][column] * sides[column][side]).sum();
-            sides[row][side] = (sides[row][side] - known) / matrix[row][row];
-        }
+        let (above, below) = sides.split_at_mut(row + 1);
+        let known = |side: usize| -> f64 {
+            matrix[row][row + 1..].iter().zip(below.iter()).map(|(entry, solved)| entry * solved[side]).sum()
+        };
+        above[row] = std::array::from_fn(|side| (above[row][side] - known(side)) / matrix[row][row]);
     }
     sides
 }

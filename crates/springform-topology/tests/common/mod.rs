@@ -1,4 +1,4 @@
-//! Random designs for property tests: frameworks, meshes, forests and edits; the tests of all crates share it.
+//! Random designs for property tests: frameworks, meshes, forests, edits; the tests of all crates share it.
 
 // Every test file uses another part of this.
 #![allow(dead_code)]

@@ -1,0 +1,765 @@
+"""Bad input: one clear line, exit code 2, and nothing written or lost, whatever was wrong."""
+# ruff: noqa: E501 (the tables of errors keep a case a line)
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import springform as sf
+from helpers import Result, assert_refused, assert_untouched, in_process, springform, start
+
+NET = """\
+springform = 1
+name = "net"
+method = "dynamic"
+
+[framework]
+grid = "dia"
+
+[[framework.cylinders]]
+name = "trunk"
+around = 8
+along = 2
+
+[[framework.cylinders]]
+name = "branch"
+around = 8
+along = 2
+
+[[framework.joins]]
+first = { ring = "trunk.end", start = 0, length = 8 }
+second = { ring = "branch.start", start = 0, length = 8 }
+
+[[framework.anchors]]
+ring = "trunk.start"
+index = 0
+position = [1.0, 0.0, 0.0]
+
+[[framework.anchors]]
+ring = "trunk.start"
+index = 4
+position = [-1.0, 0.0, 0.0]
+
+[[framework.anchors]]
+ring = "branch.end"
+index = 2
+position = [0.0, 1.0, 2.0]
+
+[forest]
+type = 1
+
+[forest.cells]
+3 = "1(1 6 1 1)"
+
+[cell_types.star]
+springs = ["c0-x", "x-m1"]
+
+[springs]
+stiffness = 1.0
+"""
+SQUARE = """\
+springform = 1
+name = "square"
+
+[framework]
+grid = "quad"
+
+[[framework.sheets]]
+name = "patch"
+across = 1
+along = 1
+
+[[framework.anchors]]
+vertex = 0
+position = [0.0, 0.0, 0.0]
+
+[[framework.anchors]]
+vertex = 3
+position = [1.0, 1.0, 0.0]
+"""
+ANCHOR = '[[framework.anchors]]\nring = "trunk.start"\n'
+
+
+def line_of(text: str, part: str) -> int:
+    return text[: text.index(part)].count("\n") + 1
+
+
+def changed(old: str, new: str, text: str = NET) -> str:
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def only_anchors(count: int) -> str:
+    """The net with its first anchors only."""
+    head, *anchors = NET.partition("[forest]")[0].split("[[framework.anchors]]")
+    return "[[framework.anchors]]".join([head, *anchors[:count]]) + "[forest]\ntype = 1\n"
+
+
+def placed_at(number: str) -> str:
+    return changed("[1.0, 0.0, 0.0]", f"[{number}, 0.0, 0.0]")
+
+
+def with_cell(notation: str, number: str = "3") -> str:
+    return changed('3 = "1(1 6 1 1)"', f"{number} = {json.dumps(notation)}")
+
+
+def nested(depth: int) -> str:
+    """A cell that is divided again and again."""
+    text = "1"
+    for _ in range(depth):
+        text = f"1({text} 1 1 1)"
+    return text
+
+
+DESIGNS: dict[str, tuple[str, list[str]]] = {
+    # The text itself.
+    "empty": ("", ["springform"]),
+    "half a table": (NET[: NET.index("length = 8")], ["broken TOML", f"net.toml:{line_of(NET, 'first')}:"]),
+    "no quotes": (changed('"dia"', "dia"), ["broken TOML", "net.toml:6:"]),
+    "a table twice": (NET + "[forest]\n", ["broken TOML"]),
+    "a key twice": (changed("around = 8", "around = 8\naround = 8"), ["broken TOML"]),
+    "a picture": ("\x89PNG\r\n\x1a\n\0\0", ["broken TOML"]),
+    "another file": ("v 0 0 0\nf 1 2 3 4\n", ["broken TOML", "net.toml:1:"]),
+    # Keys and values.
+    "an unknown key": (changed("stiffness =", "stifness ="), ["springs.stifness", "did you mean stiffness?", f"net.toml:{line_of(NET, 'stiffness')}:"]),
+    "an unknown section": (changed("[springs]", "[spring]"), ["spring:", "did you mean springs?"]),
+    "another version": (changed("springform = 1", "springform = 2"), ["format version 2"]),
+    "no version": (changed("springform = 1\n", ""), ["springform: is missing"]),
+    "an unknown method": (changed('"dynamic"', '"dynamc"'), ["method", "'dynamic'"]),
+    "an unknown grid": (changed('"dia"', '"tri"'), ["framework.grid", "'quad' or 'dia'"]),
+    "a text for a number": (changed("around = 8", 'around = "8"'), ["cylinders[0].around", "whole number", "net.toml:10:"]),
+    "a fraction of a cell": (changed("around = 8", "around = 8.5"), ["cylinders[0].around", "whole number"]),
+    "a negative number": (changed("along = 2", "along = -2"), ["cylinders[0].along", "at least 1"]),
+    "a name twice": (changed('"branch"', '"trunk"'), ["cylinders[1].name", "used twice"]),
+    # Joins.
+    "joins of unequal length": (changed('"branch.start", start = 0, length = 8', '"branch.start", start = 0, length = 6'), ["joins[0].second.length", "6", "8", f"net.toml:{line_of(NET, 'second')}:"]),
+    "a join longer than its ring": (NET.replace("length = 8", "length = 9"), ["joins[0].first.length", "9 is too long"]),
+    "a join to no ring": (changed('"branch.start"', '"brunch.start"'), ["joins[0].second.ring", "did you mean branch.start?"]),
+    "a join with itself": (changed('"branch.start"', '"trunk.end"'), ["joins[0]"]),
+    # Anchors.
+    "no anchor": (only_anchors(0), ["framework.anchors", "no anchor"]),
+    "one anchor": (only_anchors(1), ["framework.anchors", "one anchor"]),
+    "an anchor off the ring": (changed("index = 4", "index = 8"), ["anchors[1].index", "8 is out of range"]),
+    "an anchor on no ring": (changed('ring = "branch.end"', 'ring = "branch.left"'), ["anchors[2].ring"]),
+    "an anchor twice": (changed("index = 4", "index = 0"), ["anchors[1]", "same node"]),
+    "anchors that a join puts together": (changed(ANCHOR + "index = 0", '[[framework.anchors]]\nring = "trunk.end"\nindex = 0', changed(ANCHOR + "index = 4", '[[framework.anchors]]\nring = "branch.start"\nindex = 0')), ["anchors[1]", "A1", "A2"]),
+    "an anchor in two dimensions": (placed_at("1.0, 0.0"), ["anchors[0].position", "three numbers"]),
+    # Numbers.
+    "not a number": (placed_at("nan"), ["anchors[0].position[0]", "finite", f"net.toml:{line_of(NET, '[1.0')}:"]),
+    "infinity": (placed_at("-inf"), ["anchors[0].position[0]", "finite"]),
+    "too large a number": (placed_at("1" + "0" * 400), ["anchors[0].position[0]"]),
+    "thousands of digits": (placed_at("1" * 5000), ["digits"]),
+    "no stiffness": (changed("stiffness = 1.0", "stiffness = 0.0"), ["springs.stiffness", "greater than 0"]),
+    "infinite stiffness": (changed("stiffness = 1.0", "stiffness = inf"), ["springs.stiffness", "finite"]),
+    # Sizes.
+    "a level deeper than the limit": (changed("[framework]", "[framework]\nlevel = 21"), ["framework.level", "at most 20"]),
+    "a level with too many cells": (changed("[framework]", "[framework]\nlevel = 20"), ["framework.level", "lower the level"]),
+    "too many cells": (changed("around = 8", "around = 4000000"), ["framework", "coarser"]),
+    "a cell deeper than the limit": (with_cell(nested(21)), ["forest.cells.3", "20"]),
+    "a cell nested without end": (with_cell("1(" * 100_000), ["forest.cells.3"]),
+    # Cells.
+    "a cell that is not there": (with_cell("1", "48"), ["forest.cells.48", f"net.toml:{line_of(NET, '3 = ')}:"]),
+    "a cell far off": (with_cell("1", "4294967295"), ["forest.cells.4294967295"]),
+    "a cell without a number": (with_cell("1", "first"), ["forest.cells.first"]),
+    "a cell of no known type": (with_cell("1(1 7 1 1)"), ["forest.cells.3", "'7'"]),
+    "a cell with three children": (with_cell("1(1 1 1)"), ["forest.cells.3", "column"]),
+    "a cell with five children": (with_cell("1(1 1 1 1 1)"), ["forest.cells.3", "column"]),
+    "a cell that does not end": (with_cell("1(1 1 1 1"), ["forest.cells.3", "column"]),
+    "a cell turned too far": (with_cell("1@4"), ["forest.cells.3", "turn"]),
+    "a cell in other words": (with_cell("quad(é)"), ["forest.cells.3"]),
+    "an empty cell": (with_cell(""), ["forest.cells.3"]),
+    # Types.
+    "a type of no number": (changed("type = 1", "type = 7"), ["forest.type", "0 to 6"]),
+    "a type of no name": (changed("type = 1", 'type = "stor"'), ["forest.type", "star"]),
+    "a type that recursive does not allow": (changed('"dynamic"', '"recursive"'), ["forest", "recursive"]),
+    "a type that extensible does not allow": (changed('"dynamic"', '"extensible"'), ["forest", "extensible"]),
+    "a spring from nowhere": (changed("c0-x", "c4-x"), ["cell_types.star.springs[0]"]),
+    # Overrides.
+    "an override of one node": (NET + '[overrides]\ncut = ["v1"]\n', ["overrides.cut[0]", '"v1 v17"']),
+    "an override of no node": (NET + '[overrides]\ncut = ["v1 v999"]\n', ["overrides.cut[0]"]),
+    "an override off the edge": (NET + '[overrides]\nadded = ["v1 e0:3/2"]\n', ["overrides.added[0]"]),
+    # Nothing left.
+    "nothing but null cells": (changed("type = 1", "type = 0", changed('3 = "1(1 6 1 1)"', "")), ["forest"]),
+    "everything cut": (SQUARE + '[overrides]\ncut = ["v0 v1", "v1 v3", "v0 v2", "v2 v3"]\n', ["anchor"]),
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of somebody's work, in which the commands run."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.txt").write_text("mine")
+    return tmp_path
+
+
+@pytest.fixture
+def net(folder: Path) -> Path:
+    """A valid design."""
+    path = folder / "net.toml"
+    path.write_text(NET)
+    return path
+
+
+def refused(*words: str | Path, run: Callable[..., Result] = in_process) -> str:
+    """Run a command that must be refused and change no file; return its one line."""
+    result: Result = assert_untouched(Path.cwd(), lambda: run(*words))
+    assert_refused(result)
+    return result.err
+
+
+def assert_says(line: str, *parts: str) -> None:
+    for part in parts:
+        assert part in line, line
+
+
+def test_the_net_of_this_file_is_valid(net: Path) -> None:
+    assert in_process("solve", net).code == 0
+    assert sf.load(net).solve().converged
+    (net.parent / "square.toml").write_text(SQUARE)
+    assert in_process("solve", "square.toml").code == 0
+
+
+# --- designs -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_designs(name: str, folder: Path) -> None:
+    text, parts = DESIGNS[name]
+    (folder / "net.toml").write_text(text)
+    line = refused("solve", "net.toml")
+    assert line.startswith("springform: net.toml:")
+    assert_says(line, *parts)
+
+
+JSON_DESIGNS = [
+    ("", ["broken JSON", "net.json:1"]),
+    ("{", ["broken JSON"]),
+    ('{"springform": 1,}', ["broken JSON"]),
+    ("[]", ["must be a table"]),
+    ("null", ["must be a table"]),
+    ('{"springform": 1, "springform": 1}', ["twice"]),
+    ('{"springform": NaN}', ["springform"]),
+    ('{"springform": 1, "framework": {}, "froest": {}}', ["froest", "did you mean forest?"]),
+    ('{"springform": 1, "framework": ' + "[" * 100_000, ["broken JSON", "nested"]),
+]
+
+
+@pytest.mark.parametrize(("text", "parts"), JSON_DESIGNS, ids=range(len(JSON_DESIGNS)))
+def test_designs_in_json(text: str, parts: list[str], folder: Path) -> None:
+    (folder / "net.json").write_text(text)
+    line = refused("solve", "net.json")
+    assert line.startswith("springform: net.json:")
+    assert_says(line, *parts)
+
+
+def test_line_100_is_no_emoji(folder: Path) -> None:
+    (folder / "net.toml").write_text(NET + "#\n" * (99 - NET.count("\n")) + "100\n")
+    assert ":100:" in refused("solve", "net.toml")
+
+
+OUT = ("--out", "new")
+COMMANDS: list[tuple[str, ...]] = [
+    ("solve", "{}", "--json"),
+    ("solve", "{}", *OUT),
+    ("seek", "{}", "--steps", "2", "--type", "1", "--out", "new.toml"),
+    ("evolve", "{}", *OUT, "--json"),
+    ("plot", "{}", *OUT),
+]
+SUBJECTS = [
+    "broken.toml",
+    "missing.toml",
+    "three-cylnders",
+    "",
+    ".",
+    "mine.txt",
+    "empty.toml",
+    "a\nb",
+]
+
+
+@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_every_command_refuses_a_bad_design(
+    command: tuple[str, ...], subject: str, folder: Path
+) -> None:
+    (folder / "broken.toml").write_text(NET[:200])
+    (folder / "empty.toml").write_text(DESIGNS["nothing but null cells"][0])
+    refused(*(word.format(subject) for word in command))
+
+
+def test_a_design_that_is_a_folder_or_a_device(folder: Path) -> None:
+    (folder / "net.toml").mkdir()
+    assert_says(refused("solve", "net.toml"), "net.toml", "folder")
+    os.mkfifo(folder / "pipe.txt")
+    refused("solve", "pipe.txt")
+    assert_says(refused("solve", "x" * 300 + ".toml"), "too long")
+
+
+def test_a_design_in_another_encoding(folder: Path) -> None:
+    (folder / "net.toml").write_bytes(NET.replace('"net"', '"Netz für Zürich"').encode("latin-1"))
+    assert_says(refused("solve", "net.toml"), "net.toml:2:", "UTF-8")
+
+
+# --- meshes ------------------------------------------------------------------------------------
+
+QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+MESHES = [
+    ("", ["no faces"]),
+    (QUAD, ["no faces"]),
+    (QUAD + "f 1 2 3\nf 1 3 4\n", ["mesh.obj:5", "3 corners", "quad"]),
+    (QUAD + "v 2 2 2\nf 1 2 3 4\n", ["mesh.obj:5", "vertex 5", "no face"]),
+    (QUAD + "v 2 2 2\nf 1 2 3 4 5\n", ["mesh.obj:6", "5 corners"]),
+    (QUAD + "f 1 2 3 9\n", ["mesh.obj:5", "vertex 9"]),
+    (QUAD + "f 1 2 3 3\n", ["mesh.obj:5", "twice"]),
+    (QUAD + "f 0 1 2 3\n", ["mesh.obj:5", "numbered from 1"]),
+    (QUAD.replace("1 1 0", "1 nan 0") + "f 1 2 3 4\n", ["mesh.obj:3", "finite"]),
+    (QUAD.replace("1 1 0", "1 1") + "f 1 2 3 4\n", ["mesh.obj:3"]),
+    ("\x89PNG\0", ["no faces"]),
+]
+
+
+@pytest.mark.parametrize(("text", "parts"), MESHES, ids=range(len(MESHES)))
+def test_meshes(text: str, parts: list[str], folder: Path) -> None:
+    (folder / "mesh.obj").write_text(text)
+    assert_says(refused("init", "mesh.obj"), "mesh.obj", *parts)
+
+
+@pytest.mark.parametrize("anchors", ["", "0", "0,0", "0,9", "a,b", "0,-1", "0;1", "0,1.5"])
+def test_anchors_of_meshes(anchors: str, folder: Path) -> None:
+    (folder / "mesh.obj").write_text(QUAD + "f 1 2 3 4\n")
+    refused("init", "mesh.obj", f"--anchors={anchors}")
+
+
+def test_a_mesh_that_is_not_there() -> None:
+    assert_says(refused("init", "mesh.obj"), "mesh.obj", "no such file")
+
+
+# --- options -----------------------------------------------------------------------------------
+
+EVOLVE = ("evolve", "one-cylinder", *OUT)
+SEEK = ("seek", "one-cylinder", "--steps", "2", "--type", "1", "--out", "new.toml")
+OPTIONS: list[tuple[tuple[str, ...], list[str]]] = [
+    (("bogus",), ["bogus"]),
+    (("--bogus",), ["--bogus"]),
+    (("solv", "sheet"), ["solv"]),
+    (("a\nb",), []),
+    (("solve",), ["DESIGN"]),
+    (("solve", "sheet", "canopy"), ["canopy"]),
+    (("solve", "sheet", "--tolernace", "1e-9"), ["--tolernace", "--tolerance"]),
+    (("solve", "sheet", "--tolerance", "tight"), ["--tolerance"]),
+    (("solve", "sheet", "--tolerance", "nan"), ["--tolerance"]),
+    (("solve", "sheet", "--tolerance", "0"), ["--tolerance"]),
+    (("solve", "sheet", "--tolerance", "2"), ["--tolerance"]),
+    (("solve", "sheet", "--solver", "magic"), ["--solver", "implicit-euler"]),
+    (("solve", "sheet", "--out"), ["--out"]),
+    (("init", "sheep"), ["sheep", "did you mean sheet?"]),
+    (("init", "sheet", "--anchors", "1,2"), ["--anchors"]),
+    (("init", "sheet", "--out", "sheet.txt"), ["sheet.txt", ".toml"]),
+    (("init", "sheet", "--out", "nowhere/sheet.toml"), ["nowhere"]),
+    (("init", "sheet", "--out", "mine.txt/sheet.toml"), ["mine.txt"]),
+    (SEEK[:2], ["--steps"]),
+    ((*SEEK[:2], "--steps", "2", "--out", "new.toml"), ["--type"]),
+    (SEEK[:-2], ["--out"]),
+    ((*SEEK, "--steps", "0"), ["--steps"]),
+    ((*SEEK, "--steps", "-1"), ["--steps"]),
+    ((*SEEK, "--steps", "many"), ["--steps"]),
+    ((*SEEK, "--type", "7"), ["7"]),
+    ((*SEEK, "--type", ""), []),
+    ((*SEEK, "--type", "1,6"), ["1,6"]),
+    ((*SEEK, "--type", "2", "--method", "recursive"), ["recursive"]),
+    ((*SEEK, "--type", "6", "--method", "extensible"), ["extensible"]),
+    ((*SEEK, "--method", "magic"), ["magic", "recursive"]),
+    ((*SEEK, "--until-suf", "nan"), ["until_suf"]),
+    ((*SEEK, "--until-differential", "inf"), ["until_differential"]),
+    ((*SEEK, "--until-differential", "-2"), ["until_differential"]),
+    ((*SEEK[:-1], "new.txt"), ["new.txt", ".toml"]),
+    ((*SEEK[:-1], "nowhere/new.toml"), ["nowhere"]),
+    (EVOLVE[:2], ["--out"]),
+    ((*EVOLVE, "--population", "0"), ["population", "1"]),
+    ((*EVOLVE, "--population", "-5"), ["population"]),
+    ((*EVOLVE, "--population", "1e3"), ["--population"]),
+    ((*EVOLVE, "--population", "1000001"), ["population", "1000000"]),
+    ((*EVOLVE, "--population", "9" * 30), ["population"]),
+    ((*EVOLVE, "--generations", "-1"), ["generations"]),
+    ((*EVOLVE, "--generations", "9" * 30), ["generations"]),
+    ((*EVOLVE, "--seed", "-1"), ["seed"]),
+    ((*EVOLVE, "--seed", str(2**64)), ["seed"]),
+    ((*EVOLVE, "--types", ""), ["types"]),
+    ((*EVOLVE, "--types", "1,7"), ["types", "7"]),
+    ((*EVOLVE, "--types", "1;6"), ["types"]),
+    ((*EVOLVE, "--types", "1,2", "--method", "recursive"), ["types", "recursive"]),
+    ((*EVOLVE, "--types", "6", "--method", "extensible"), ["types", "extensible"]),
+    ((*EVOLVE, "--method", "magic"), ["method", "dynamic"]),
+    ((*EVOLVE, "--weighting", "heavy"), ["weighting", "exponential"]),
+    ((*EVOLVE, "--weight-base", "nan"), ["weight_base"]),
+    ((*EVOLVE, "--weight-base", "0.5"), ["weight_base"]),
+    ((*EVOLVE, "--weight-exponent", "-1"), ["weight_exponent"]),
+    ((*EVOLVE, "--insertions", "-3"), ["insertions", "5%"]),
+    ((*EVOLVE, "--insertions", "101%"), ["insertions", "100%"]),
+    ((*EVOLVE, "--insertions", "1.5"), ["insertions"]),
+    ((*EVOLVE, "--insertions", "9" * 5000), ["insertions"]),
+    ((*EVOLVE, "--insertions", "nan%"), ["insertions"]),
+    ((*EVOLVE, "--switches", "few"), ["switches"]),
+    ((*EVOLVE, "--toggles", "1000001"), ["toggles"]),
+    ((*EVOLVE, "--fitness", "beauty"), ["fitness", "differential"]),
+    ((*EVOLVE, "--suf-reference", "end"), ["suf_reference", "parent"]),
+    ((*EVOLVE, "--niche", "-1"), ["niche"]),
+    ((*EVOLVE, "--niche", "1.5"), ["--niche"]),
+    ((*EVOLVE, "--min-length", "0"), ["min_length"]),
+    ((*EVOLVE, "--min-length", "nan"), ["min_length"]),
+    ((*EVOLVE, "--selection", "roulette"), ["selection", "comma"]),
+    ((*EVOLVE, "--until-springs", "0"), ["until_springs"]),
+    ((*EVOLVE, "--until-differential", "0"), ["until_differential"]),
+    ((*EVOLVE, "--until-suf", "inf"), ["until_suf"]),
+    ((*EVOLVE, "--threads", "0"), ["threads"]),
+    ((*EVOLVE, "--threads", "5000"), ["threads"]),
+    ((*EVOLVE, "--self-adapt=yes"), ["--self-adapt"]),
+    (("resume",), ["RUN"]),
+    (("resume", "nowhere"), ["nowhere", "no run"]),
+    (("resume", "."), ["no run"]),
+    (("resume", "mine.txt"), ["mine.txt", "no run"]),
+    (("resume", "x" * 300), ["no run"]),
+    (("show", "nowhere", "--generation", "1", "--individual", "0", "--out", "new.toml"), ["nowhere", "no run"]),
+    (("plot", "sheet"), ["--out"]),
+    (("plot", "sheet", "--out", "mine.txt"), ["mine.txt"]),
+    (("plot", "sheet", "--out", "mine.txt/new"), ["mine.txt"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("words", "parts"), OPTIONS, ids=lambda case: " ".join(case)[-60:])
+def test_options(words: tuple[str, ...], parts: list[str]) -> None:
+    assert_says(refused(*words), *parts)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [OPTIONS[0][0], OPTIONS[6][0], (*EVOLVE, "--population", "0"), ("solve", "broken.toml")],
+    ids=lambda words: words[0],
+)
+def test_real_processes_say_the_same(words: tuple[str, ...], folder: Path) -> None:
+    (folder / "broken.toml").write_text(NET[:200])
+    assert refused(*words) == refused(*words, run=springform)
+
+
+# --- folders -----------------------------------------------------------------------------------
+
+
+def test_outputs_that_are_in_the_way(net: Path, folder: Path) -> None:
+    short = ("--generations", "1", "--population", "2")
+    assert_says(refused("evolve", net, "--out", "mine.txt", *short), "mine.txt")
+    assert_says(refused("evolve", net, "--out", "mine.txt/run", *short), "mine.txt/run")
+    assert_says(refused("evolve", net, "--out", "/proc/run", *short), "/proc/run")
+    assert_says(refused("evolve", net, "--out", ".", *short), "not empty")
+    assert_says(refused("evolve", net, "--out", "x" * 300, *short), "too long")
+    assert_says(refused("solve", net, "--out", "mine.txt"), "mine.txt")
+    assert_says(refused("solve", net, "--out", "/proc/results"), "/proc/results")
+    assert_says(refused("plot", net, "--out", "/proc/pictures"), "/proc/pictures")
+    assert_says(refused("init", "sheet", "--out", "net.toml"), "net.toml", "--force")
+
+
+def test_results_do_not_replace_other_files(net: Path, folder: Path) -> None:
+    net.rename(folder / "design.toml")
+    assert_says(refused("solve", "design.toml", "--out", "."), "design.toml", "another folder")
+    (folder / "results").mkdir()
+    (folder / "results" / "net.obj").write_text("v 0 0 0\n")
+    assert_says(refused("solve", "design.toml", "--out", "results"), "net.obj", "another folder")
+    for _ in range(2):
+        assert in_process("solve", "design.toml", "--out", "own").code == 0
+
+
+@pytest.fixture
+def run(folder: Path) -> Path:
+    """A finished run of two checkpoints."""
+    path = folder / "run"
+    sf.evolve(sf.load("one-cylinder"), out=path, population=4, generations=3)
+    sf.resume(path, generations=6)
+    return path
+
+
+def shown(generation: int | str, individual: int | str, out: str = "new.toml") -> tuple[str, ...]:
+    words = ("--generation", str(generation), "--individual", str(individual))
+    return ("show", "run", *words, "--out", out)
+
+
+def test_runs_are_not_overwritten(run: Path) -> None:
+    assert_says(refused("evolve", "sheet", "--out", run), "run", "already holds a run", "resume")
+    assert_says(refused("solve", "sheet", "--out", run), "another folder")
+    assert_says(refused(*shown(1, 1, "run/design.toml")), "run/design.toml")
+    refused(*SEEK[:-1], "run/design.toml")
+
+
+def test_individuals_that_are_not_there(run: Path) -> None:
+    assert_says(refused(*shown(0, 0)), "generation 0", "1 to 6")
+    assert_says(refused(*shown(7, 0)), "generation 7", "1 to 6")
+    assert_says(refused(*shown(1, 4)), "individual 4", "0 to 3")
+    assert_says(refused(*shown(1, -1)), "individual -1")
+    assert_says(refused(*shown("1.5", 0)), "--generation")
+    assert_says(refused(*shown(1, 1, "new.txt")), "new.txt")
+    assert_says(refused(*shown(1, 1, "nowhere/new.toml")), "nowhere")
+
+
+def test_options_of_resume(run: Path) -> None:
+    assert_says(refused("resume", run, "--generations", "-1"), "generations")
+    assert_says(refused("resume", run, "--threads", "0"), "threads")
+    assert_says(refused("resume", run, "--population", "5"), "--population")
+
+
+# --- damaged runs ------------------------------------------------------------------------------
+
+NEEDED = ["run.json", "design.toml", "measures/0000001-0000003.parquet"]
+MENDED = ["journal.jsonl", "measures/0000004-0000006.parquet", "log.txt", "lock", "best.toml"]
+READERS: list[tuple[str, ...]] = [
+    ("resume", "run"),
+    shown(1, 1),
+    ("plot", "run", *OUT),
+]
+
+
+def garbage(size: int) -> bytes:
+    return random.Random(size).randbytes(size)
+
+
+DAMAGE: dict[str, Callable[[Path], object]] = {
+    "missing": lambda path: path.unlink(),
+    "empty": lambda path: path.write_bytes(b""),
+    "garbage": lambda path: path.write_bytes(garbage(500)),
+    "a folder": lambda path: (path.unlink(), path.mkdir()),
+    "zeros at the end": lambda path: path.write_bytes(path.read_bytes()[:-20] + b"\0" * 20),
+    "half": lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+@pytest.mark.parametrize("name", NEEDED)
+def test_damaged_files_of_a_run_are_named(name: str, damage: str, run: Path) -> None:
+    DAMAGE[damage](run / name)
+    for words in READERS:
+        line = refused(*words)
+        assert "run" in line
+        assert_says(
+            line, Path(name).name if damage != "missing" or name != NEEDED[2] else "measures"
+        )
+
+
+@pytest.mark.parametrize("name", ["missing", "empty", "half"])
+@pytest.mark.parametrize("file", MENDED)
+def test_what_can_be_made_again_is(file: str, name: str, run: Path) -> None:
+    digest = sf.open_run(run).digest()
+    path = run / file
+    if name == "half" and file.endswith(".parquet"):
+        DAMAGE[name](path)
+        assert_says(refused("resume", run), path.name)
+        return
+    DAMAGE[name](path) if not (name == "empty" and file.endswith(".parquet")) else path.unlink()
+    assert in_process("resume", run, "--generations", "6").code == 0
+    assert sf.open_run(run).digest() == digest
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_runs_damaged_at_random_are_refused_or_the_same(seed: int, run: Path, folder: Path) -> None:
+    whole = folder / "whole"
+    run.rename(whole)
+    digest = sf.open_run(whole).digest()
+    draw = random.Random(seed)
+    names = sorted(path for path in whole.rglob("*") if path.is_file() and path.stat().st_size)
+    for _ in range(12):
+        shutil.copytree(whole, run)
+        path = run / draw.choice(names).relative_to(whole)
+        data = bytearray(path.read_bytes())
+        if draw.random() < 0.5:
+            del data[draw.randrange(len(data)) :]
+        else:
+            for _ in range(draw.choice([1, 3, 50])):
+                data[draw.randrange(len(data))] = draw.randrange(256)
+        path.write_bytes(data)
+        result = in_process("resume", run, "--generations", "6", "--json")
+        if result.code == 0 and path.name != "journal.jsonl":
+            assert result.report["digest"] == digest, path
+        elif result.code:
+            assert_refused(result, "run")
+        shutil.rmtree(run)
+
+
+JOURNAL_LINES = [
+    "{}",
+    "[]",
+    "3",
+    "null",
+    '"parent"',
+    '{"generation": 7}',
+    '{"parameters": {}}',
+    '{"generation": 7, "parameters": 3}',
+    '{"generation": 9, "parent": 1, "springs": 3, "force_differential": 2.0, "suf": 1.0, "strategy": [], "edits": []}',
+    '{"generation": 7, "parent": -1}',
+    "{" * 5000,
+]
+
+
+@pytest.mark.parametrize("line", JOURNAL_LINES, ids=lambda line: line[:20])
+def test_broken_lines_of_the_journal(line: str, run: Path) -> None:
+    with open(run / "journal.jsonl", "a") as journal:
+        journal.write(line + "\n")
+    assert_says(refused("resume", run), "journal.jsonl:8:")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "part"),
+    [
+        ("springform_run", 2, "version 2"),
+        ("springform_run", "1", "version"),
+        ("start", [1], "run.json"),
+        ("start", ["a", 2.0], "run.json"),
+        ("design", "", "design.toml"),
+        ("parameters", [], "run.json"),
+        ("parameters", {"population": -1}, "parameters.population"),
+        ("parameters", {"populatoin": 1}, "did you mean population?"),
+        ("parameters", {"types": 5.5}, "types"),
+        ("tolerance", None, "run.json"),
+    ],
+)
+def test_broken_settings_of_a_run(key: str, value: Any, part: str, run: Path) -> None:
+    settings = json.loads((run / "run.json").read_text())
+    (run / "run.json").write_text(json.dumps(settings | {key: value}))
+    assert_says(refused("resume", run), "run/", part)
+
+
+def test_a_journal_of_another_run(run: Path) -> None:
+    lines = (run / "journal.jsonl").read_text().replace(" subdivide", " merge")
+    (run / "journal.jsonl").write_text(lines)
+    refused("resume", run)
+
+
+# --- full disks --------------------------------------------------------------------------------
+
+
+def limited(size: int) -> Callable[[], None]:
+    """No file may grow beyond a size, as under `ulimit -f`."""
+
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return limit
+
+
+@pytest.mark.parametrize("size", [0, 500, 1000])
+def test_no_room_for_a_design(size: int, net: Path) -> None:
+    words = ("init", "three-cylinders", "--out", "net.toml", "--force")
+    line = refused(*words, run=lambda *w: springform(*w, preexec_fn=limited(size)))
+    assert_says(line, "net.toml", "ulimit -f")
+
+
+@pytest.mark.parametrize("size", [0, 100, 2_000, 4_000, 10_000, 30_000])
+def test_a_run_on_a_full_disk_can_go_on(size: int, folder: Path) -> None:
+    words = ("one-cylinder", "--population", "20", "--generations", "30", "--out", "run")
+    full = springform("evolve", *words, preexec_fn=limited(size))
+    assert_refused(full, "ulimit -f")
+    begun = (folder / "run" / "run.json").exists()
+    assert begun == ("springform resume run" in full.err)
+    result = in_process("resume", "run") if begun else in_process("evolve", *words)
+    assert result.code == 0, result
+    control = sf.evolve(sf.load("one-cylinder"), population=20, generations=30)
+    assert sf.open_run("run").digest() == control.digest()
+
+
+def test_every_write_of_a_run_may_fail(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    words = ("one-cylinder", "--population", "4", "--generations", "3", "--out", "run")
+    control = sf.evolve(sf.load("one-cylinder"), population=4, generations=3).digest()
+    monkeypatch.setattr("springform.evolution._FIRST_CHECKPOINT", 0)
+    monkeypatch.setattr("springform.evolution._CHECKPOINT_SHARE", 0)
+    flush = os.fsync
+    for fatal in range(100):
+        steps = iter(range(1000))
+
+        def full(descriptor: int, steps: Any = steps, fatal: int = fatal) -> None:
+            if next(steps) == fatal:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            flush(descriptor)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "fsync", full)
+            failed = in_process("evolve", *words)
+        if next(steps) < fatal:
+            break
+        if failed.code:
+            assert_refused(failed, "no space left", "run")
+        begun = (folder / "run" / "run.json").exists()
+        again = in_process("resume", "run") if begun else in_process("evolve", *words)
+        assert again.code == 0, again
+        assert sf.open_run("run").digest() == control
+        assert not list((folder / "run").rglob(".*"))
+        shutil.rmtree(folder / "run")
+    assert fatal > 15
+
+
+def test_pictures_and_results_on_a_full_disk(net: Path, folder: Path) -> None:
+    for command in ("solve", "plot"):
+        out = folder / command
+        full = springform(command, net, "--out", out, preexec_fn=limited(300))
+        assert_refused(full, "ulimit -f")
+        assert all(path.stat().st_size == 0 or path.stat().st_size < 300 for path in out.iterdir())
+        assert not list(out.glob(".*"))
+
+
+def test_standard_output_that_is_full_or_closed(net: Path) -> None:
+    with open("/dev/full", "w") as full:
+        result = springform("solve", net, "--json", capture_output=False, stdout=full, stderr=-1)
+    assert result.code == 2
+    assert (
+        result.err == "springform: no space left on the disk; free some, or choose another place\n"
+    )
+    reader, writer = os.pipe()
+    os.close(reader)
+    with open(writer, "w") as closed:
+        result = springform("init", capture_output=False, stdout=closed, stderr=subprocess.PIPE)
+    assert "Traceback" not in result.err
+    assert "Exception ignored" not in result.err
+
+
+# --- interrupts and memory ---------------------------------------------------------------------
+
+
+def interrupted(*words: str | Path, after: float) -> Result:
+    process = start(*words)
+    time.sleep(after)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    return Result(process.returncode, out, err)
+
+
+def test_an_interrupted_search_writes_nothing(folder: Path) -> None:
+    words = ("seek", "three-cylinders-dense", "--steps", "100000", "--type", "2", "--out", "a.toml")
+    result = assert_untouched(folder, lambda: interrupted(*words, after=1.5))
+    assert result == Result(130, "", "springform: interrupted\n")
+
+
+def test_two_interrupts_at_once_do_no_harm(folder: Path) -> None:
+    process = start("evolve", "one-cylinder", "--generations", "100000", "--out", "run")
+    while not (folder / "run" / "run.json").exists():
+        time.sleep(0.02)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 130, err
+    assert_says(err, "interrupted", "springform resume run")
+    sf.open_run("run").best.network()
+
+
+def test_a_huge_population_can_be_interrupted(folder: Path) -> None:
+    words = ("--population", "1000000", "--generations", "2", "--out", "run")
+    result = interrupted("evolve", "one-cylinder", *words, after=2.0)
+    assert result.code == 130, result
+    assert_says(result.err, "interrupted", "springform resume run")
