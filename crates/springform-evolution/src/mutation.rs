@@ -186,7 +186,7 @@ pub fn mutate(
     }
     for at in drawn(&candidates.owners, strategy.toggles, &divided, draws) {
         let Candidate { place: cell, on, .. } = candidates.owners[at];
-        edits.push(Edit::Switch { cell, on: !on });
+        edits.push(Edit::Toggle { cell, on: !on });
     }
     edits
 }

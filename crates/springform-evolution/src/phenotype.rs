@@ -1,9 +1,10 @@
 //! From genotype to measured phenotype: expression, network, equilibrium, measures in one call.
 
+use springform_mechanics::assembly::{SpringLaw, assemble};
 use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
-use springform_mechanics::network::{Network, SpringLaw};
+use springform_mechanics::network::Network;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
@@ -76,7 +77,7 @@ impl Setting {
     /// The filters leave no net.
     pub fn grow(&self, forest: &Forest) -> Result<(Expression, Network<'static>), ExpressionError> {
         let expression = express(&self.mesh, forest, &self.catalogue, self.method, &self.anchors)?;
-        let network = Network::from_expression(&expression, &self.embedding, self.law);
+        let network = assemble(&expression, &self.embedding, self.law);
         Ok((expression, network))
     }
 

@@ -51,7 +51,7 @@ impl StressSeeking {
         let Some(at) = hottest else { return Ok(Vec::new()) };
         let (cell, index) = (cells[at].place, cells[at].index);
         let mut edits = vec![match self.forest.children(index) {
-            Some(_) => Edit::Switch { cell, on: true },
+            Some(_) => Edit::Toggle { cell, on: true },
             None => Edit::Subdivide { cell, children: [Content { kind, turn: 0 }; 4] },
         }];
         let mut forest = self.forest.clone();

@@ -11,9 +11,8 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy as Rates};
 use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_mechanics::embedding::Embedding;
+use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
-use springform_mechanics::network::SpringLaw;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
 use springform_topology::edit::Edit;
@@ -197,7 +196,7 @@ fn cylinder() -> Start {
     let target = |height: f64| corners.map(|[x, y]| [x, y, height]);
     let positions = rings.iter().flat_map(|&(_, height)| target(height)).collect();
     let setting = Setting {
-        embedding: Embedding::from_anchors(&mesh, &anchors, positions),
+        embedding: embed(&mesh, &anchors, positions),
         catalogue: Catalogue::default(),
         method: Method::Dynamic,
         law: SpringLaw::default(),

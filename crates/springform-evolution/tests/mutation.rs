@@ -53,7 +53,7 @@ proptest! {
             _ => None,
         });
         let switched = cells(&edits, |edit| match edit {
-            Edit::Switch { cell, .. } => Some(*cell),
+            Edit::Toggle { cell, .. } => Some(*cell),
             _ => None,
         });
         prop_assert_eq!(divided.len() + retyped.len() + switched.len(), edits.len());
@@ -110,7 +110,7 @@ proptest! {
             .filter(|&(cell, place)| design.forest.children(cell).is_some() && !hidden(place))
             .count();
         prop_assert_eq!(edits.len(), (share as usize * owners).div_ceil(100));
-        let others = edits.iter().filter(|edit| !matches!(edit, Edit::Switch { .. })).count();
+        let others = edits.iter().filter(|edit| !matches!(edit, Edit::Toggle { .. })).count();
         prop_assert_eq!(others, 0);
     }
 

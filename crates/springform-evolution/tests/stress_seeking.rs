@@ -43,7 +43,7 @@ proptest! {
                 break;
             };
             let expected = if stored {
-                Edit::Switch { cell: cell.place, on: true }
+                Edit::Toggle { cell: cell.place, on: true }
             } else {
                 Edit::Subdivide { cell: cell.place, children: [Content { kind, turn: 0 }; 4] }
             };

@@ -1,13 +1,7 @@
 //! Embedding: where anchors stand and where free nodes are drawn. Coordinates are no part of the topology.
 
-use crate::equilibrium::{Settings, Status, solve};
-use crate::network::{Network, SpringLaw};
 use crate::vector::{Vector, add, scale};
 use springform_topology::base_mesh::BaseMesh;
-use springform_topology::cell_type::Catalogue;
-use springform_topology::expression::express;
-use springform_topology::filters::Method;
-use springform_topology::forest::{Content, Forest};
 use springform_topology::node_key::{NodeKey, NodePlace, UNITS};
 
 /// Positions of anchors and of the base mesh.
@@ -31,25 +25,9 @@ impl Embedding {
         }
     }
 
-    /// An embedding in which base vertices are drawn at the equilibrium of the base mesh, each cell a plain quad
-    /// of unit springs; vertices that carry nothing are drawn at the mean of the anchors.
-    pub fn from_anchors(mesh: &BaseMesh, anchors: &[u32], anchor_positions: Vec<Vector>) -> Embedding {
-        let middle = crate::vector::mean(anchor_positions.iter().copied());
-        let mut drawn = Self::drawn(mesh, anchor_positions, vec![middle; mesh.vertex_count() as usize]);
-        let forest = Forest::new(mesh.faces().len() as u32, Content::QUAD);
-        let expression = express(mesh, &forest, &Catalogue::default(), Method::Recursive, anchors);
-        if let Ok(expression) = expression {
-            let network = Network::from_expression(&expression, &drawn, SpringLaw::default());
-            let equilibrium = solve(&network, &Settings::default());
-            if equilibrium.status == Status::Converged {
-                for (node, position) in expression.nodes.iter().zip(equilibrium.positions) {
-                    if let NodePlace::Vertex(vertex) = node.place() {
-                        drawn.base_positions[vertex as usize] = position;
-                    }
-                }
-            }
-        }
-        drawn
+    /// Draws a base vertex elsewhere [m].
+    pub fn draw(&mut self, vertex: u32, position: Vector) {
+        self.base_positions[vertex as usize] = position;
     }
 
     /// Drawn positions of the base vertices [m].

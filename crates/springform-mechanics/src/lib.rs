@@ -9,6 +9,7 @@
 //! one symmetric positive definite system: the force density system of Schek, "The force density method for form
 //! finding and computation of general networks", 1974, with q = k.
 
+pub mod assembly;
 pub mod embedding;
 pub mod equilibrium;
 pub mod measures;

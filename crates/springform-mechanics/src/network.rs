@@ -1,8 +1,6 @@
 //! Network: the phenotype's inputs. Results live in [`crate::equilibrium::Equilibrium`].
 
-use crate::embedding::Embedding;
 use crate::vector::{Vector, length, subtract};
-use springform_topology::expression::Expression;
 use std::borrow::Cow;
 use thiserror::Error;
 
@@ -21,21 +19,6 @@ pub struct Network<'a> {
     pub loads: Cow<'a, [Vector]>,
     /// Nodes held in place, n.
     pub fixed: Cow<'a, [bool]>,
-}
-
-/// Stiffness of the springs of a net by where they lie; all rest lengths are zero.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct SpringLaw {
-    /// Stiffness of every spring [N/m].
-    pub stiffness: f64,
-    /// Factor on the stiffness of springs along free rings and rims.
-    pub ring_factor: f64,
-}
-
-impl Default for SpringLaw {
-    fn default() -> Self {
-        SpringLaw { stiffness: 1.0, ring_factor: 1.0 }
-    }
 }
 
 /// What is wrong with a network.
@@ -67,31 +50,6 @@ pub enum NetworkError {
 }
 
 impl Network<'_> {
-    /// The network of an expression under the default law; anchors are fixed at their positions, free nodes
-    /// start at their drawn positions.
-    pub fn from_expression(
-        expression: &Expression,
-        embedding: &Embedding,
-        law: SpringLaw,
-    ) -> Network<'static> {
-        let mut positions: Vec<Vector> =
-            expression.nodes.iter().map(|&node| embedding.drawn_position(node)).collect();
-        let mut fixed = vec![false; positions.len()];
-        for (&node, &position) in expression.anchors.iter().zip(&embedding.anchor_positions) {
-            positions[node as usize] = position;
-            fixed[node as usize] = true;
-        }
-        let factor = |ring: bool| if ring { law.ring_factor } else { 1.0 };
-        Network {
-            springs: expression.springs.iter().map(|spring| spring.nodes).collect(),
-            stiffness: expression.springs.iter().map(|spring| law.stiffness * factor(spring.ring)).collect(),
-            rest_length: vec![0.0; expression.springs.len()].into(),
-            loads: vec![[0.0; 3]; positions.len()].into(),
-            positions: positions.into(),
-            fixed: fixed.into(),
-        }
-    }
-
     /// Checks shapes and values.
     ///
     /// # Errors

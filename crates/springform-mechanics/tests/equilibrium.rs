@@ -6,10 +6,10 @@ use nets::common::cases;
 use nets::{Net, eliminate, largest_distance, nets, point, unit_network};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use springform_mechanics::embedding::Embedding;
+use springform_mechanics::assembly::{SpringLaw, assemble, embed};
 use springform_mechanics::equilibrium::implicit_euler::{self, Motion};
 use springform_mechanics::equilibrium::{Settings, Status, residuals, solve};
-use springform_mechanics::network::{Network, NetworkError, SpringLaw};
+use springform_mechanics::network::{Network, NetworkError};
 use springform_mechanics::vector::{Vector, add, cross, length, scale, subtract};
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
@@ -210,8 +210,8 @@ proptest! {
         let expression =
             express(&mesh, &forest, &Catalogue::default(), Method::Dynamic, &anchors).expect("a net");
         let positions = anchors.iter().map(|&vertex| target(vertex)).collect();
-        let embedding = Embedding::from_anchors(&mesh, &anchors, positions);
-        let network = Network::from_expression(&expression, &embedding, SpringLaw::default());
+        let embedding = embed(&mesh, &anchors, positions);
+        let network = assemble(&expression, &embedding, SpringLaw::default());
         let equilibrium = solve(&network, &Settings::default());
         let expected: Vec<Vector> = (0..mesh.vertex_count()).map(target).collect();
         prop_assert!(largest_distance(&equilibrium.positions, &expected) <= 1e-10);

@@ -5,10 +5,10 @@ mod nets;
 use nets::common::cases;
 use nets::{Net, nets, point};
 use proptest::prelude::*;
-use springform_mechanics::embedding::Embedding;
+use springform_mechanics::assembly::{SpringLaw, assemble, embed};
 use springform_mechanics::equilibrium::{Equilibrium, Settings, solve};
 use springform_mechanics::measures::{Measures, apertures, inner_forces, spring_utilization};
-use springform_mechanics::network::{Network, SpringLaw};
+use springform_mechanics::network::Network;
 use springform_mechanics::vector::{Vector, add, cross, dot, length, scale};
 use springform_topology::address::Place;
 use springform_topology::base_mesh::BaseMesh;
@@ -34,8 +34,8 @@ fn hung(
     positions: Vec<Vector>,
 ) -> (Expression, Network<'static>, Equilibrium) {
     let expression = express(mesh, forest, &Catalogue::default(), Method::Dynamic, anchors).expect("a net");
-    let embedding = Embedding::from_anchors(mesh, anchors, positions);
-    let network = Network::from_expression(&expression, &embedding, SpringLaw::default());
+    let embedding = embed(mesh, anchors, positions);
+    let network = assemble(&expression, &embedding, SpringLaw::default());
     let equilibrium = solve(&network, &Settings::default());
     (expression, network, equilibrium)
 }

@@ -72,7 +72,10 @@ pub fn solve<'py>(
             py.detach(|| implicit_euler::solve(&network, &settings, implicit_euler::Motion::default()))
         }
         _ => {
-            return Err(refusal("solver", format!("unknown solver '{solver}'; use direct or implicit-euler")));
+            return Err(refusal(
+                "solver",
+                format!("unknown solver '{solver}'; use direct or implicit-euler"),
+            ));
         }
     };
     equilibrium_dict(py, result)

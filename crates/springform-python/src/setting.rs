@@ -8,10 +8,10 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springform_evolution::phenotype;
+use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::{Measures, apertures, inner_forces};
-use springform_mechanics::network::SpringLaw;
 use springform_mechanics::vector::Vector;
 use springform_topology::address::Place;
 use springform_topology::cell_type::Catalogue;
@@ -85,7 +85,7 @@ impl Setting {
         let mesh = mesh.mesh.clone();
         let embedding = py.detach(|| match drawn {
             Some(drawn) => Embedding::drawn(&mesh, anchor_positions, drawn),
-            None => Embedding::from_anchors(&mesh, &anchors, anchor_positions),
+            None => embed(&mesh, &anchors, anchor_positions),
         });
         let setting = phenotype::Setting {
             mesh,

@@ -44,7 +44,7 @@ pub enum Edit {
         to: Content,
     },
     /// Switches the stored children of a cell on or off.
-    Switch {
+    Toggle {
         /// The cell.
         cell: Place,
         /// The state that it gets.
@@ -78,7 +78,7 @@ pub enum EditError {
     Retype(Place),
     /// Nothing to switch, or already in that state.
     #[error("cell {0} can't be switched: {1}")]
-    Switch(Place, &'static str),
+    Toggle(Place, &'static str),
     /// The spring is already overridden, or not as the edit says.
     #[error("the spring {0} {1} is already overridden, or is not as the edit says")]
     Override(NodeKey, NodeKey),
@@ -105,7 +105,7 @@ impl Edit {
             Edit::Subdivide { cell, children } => Edit::Merge { cell, children },
             Edit::Merge { cell, children } => Edit::Subdivide { cell, children },
             Edit::Retype { cell, from, to } => Edit::Retype { cell, from: to, to: from },
-            Edit::Switch { cell, on } => Edit::Switch { cell, on: !on },
+            Edit::Toggle { cell, on } => Edit::Toggle { cell, on: !on },
             Edit::Override { pair, what, set } => Edit::Override { pair, what, set: !set },
         }
     }
@@ -145,13 +145,13 @@ impl Edit {
                 }
                 forest.set_content(index, to);
             }
-            Edit::Switch { cell, on } => {
+            Edit::Toggle { cell, on } => {
                 let index = find(forest, cell)?;
                 if forest.children(index).is_none() {
-                    return Err(EditError::Switch(cell, "it has no children"));
+                    return Err(EditError::Toggle(cell, "it has no children"));
                 }
                 if forest.is_on(index) == on {
-                    return Err(EditError::Switch(cell, "it already is so"));
+                    return Err(EditError::Toggle(cell, "it already is so"));
                 }
                 forest.set_on(index, on);
             }
@@ -198,8 +198,8 @@ impl Edit {
             Edit::Subdivide { cell, children } => format!("{cell} subdivide {}", words(children)),
             Edit::Merge { cell, children } => format!("{cell} merge {}", words(children)),
             Edit::Retype { cell, from, to } => format!("{cell} retype {}", words(&[*from, *to])),
-            Edit::Switch { cell, on: true } => format!("{cell} on"),
-            Edit::Switch { cell, on: false } => format!("{cell} off"),
+            Edit::Toggle { cell, on: true } => format!("{cell} on"),
+            Edit::Toggle { cell, on: false } => format!("{cell} off"),
             Edit::Override { pair, what, set } => {
                 let [a, b] = pair.keys();
                 let verb = match (what, set) {
@@ -238,7 +238,7 @@ impl Edit {
                 to: parse_content(to, catalogue)?,
             }),
             [cell, state @ ("on" | "off")] => {
-                Ok(Edit::Switch { cell: Place::parse(cell)?, on: *state == "on" })
+                Ok(Edit::Toggle { cell: Place::parse(cell)?, on: *state == "on" })
             }
             [a, b, verb @ ("add" | "unadd" | "cut" | "uncut")] => {
                 let (a, b) = (NodeKey::parse(a, mesh)?, NodeKey::parse(b, mesh)?);

@@ -29,7 +29,7 @@ fn any_edit(design: &Design, dice: &mut Dice) -> Edit {
         0 => Edit::Subdivide { cell, children: contents },
         1 => Edit::Merge { cell, children: contents },
         2 => Edit::Retype { cell, from: contents[0], to: contents[1] },
-        3 => Edit::Switch { cell, on: dice.percent(50) },
+        3 => Edit::Toggle { cell, on: dice.percent(50) },
         _ => {
             let pair = NodePair::new(NodeKey::vertex(dice.below(4)), NodeKey::vertex(4 + dice.below(2)));
             let what = dice.pick(&[Override::Cut, Override::Added]);
@@ -316,7 +316,7 @@ fn refusals_say_why() {
     let mut refused = |edit: Edit| edit.apply(&mut forest).expect_err("the edit does not fit");
     assert_eq!(refused(Edit::Subdivide { cell: child, children: quads }), EditError::NoCell(child));
     assert_eq!(refused(Edit::Merge { cell: top, children: quads }), EditError::Merge(top));
-    assert!(matches!(refused(Edit::Switch { cell: top, on: false }), EditError::Switch(..)));
+    assert!(matches!(refused(Edit::Toggle { cell: top, on: false }), EditError::Toggle(..)));
     let null = Content { kind: NULL, turn: 0 };
     assert_eq!(refused(Edit::Retype { cell: top, from: null, to: null }), EditError::Retype(top));
 }

@@ -60,7 +60,7 @@ fn written(forest: &Forest) -> Vec<String> {
 fn below(edit: &Edit) -> u32 {
     match *edit {
         Edit::Subdivide { cell, .. } | Edit::Merge { cell, .. } => cell.face,
-        Edit::Retype { cell, .. } | Edit::Switch { cell, .. } => cell.face,
+        Edit::Retype { cell, .. } | Edit::Toggle { cell, .. } => cell.face,
         Edit::Override { .. } => u32::MAX,
     }
 }
@@ -162,12 +162,12 @@ proptest! {
                     let parent = replayed.forest.find(cell).expect("the cell exists");
                     prop_assert_eq!(children, [replayed.forest.content(parent); 4]);
                 }
-                Edit::Switch { cell, on: true } => {
+                Edit::Toggle { cell, on: true } => {
                     let parent = replayed.forest.find(cell).expect("the cell exists");
                     prop_assert!(replayed.forest.children(parent).is_some());
                 }
                 // Only children of a cell that the closure just switched on lose their own subdivisions.
-                Edit::Switch { cell, on: false } => prop_assert!(cell.level > 0),
+                Edit::Toggle { cell, on: false } => prop_assert!(cell.level > 0),
                 other => prop_assert!(false, "{other:?}"),
             }
             edit.apply(&mut replayed.forest).expect("edits fit in order");

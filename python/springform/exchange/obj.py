@@ -48,7 +48,13 @@ def read_obj(path: str | os.PathLike[str]) -> tuple[list[Vertex], list[Face]]:
 
     # A face may name vertices that come after it, so this waits for the end of the file.
     used = bytearray(len(vertices))
+    first_lines: dict[frozenset[int], int] = {}
     for face, line in zip(faces, face_lines, strict=True):
+        first = first_lines.setdefault(frozenset(face), line)
+        if first != line:
+            raise DesignError(
+                f"the face of line {first} once more; remove one of the two", file=source, line=line
+            )
         for number in face:
             if number >= len(vertices):
                 raise DesignError(

@@ -5,7 +5,7 @@
 //! taken out of the system instead of made heavy, and positions stay in double precision.
 
 use super::newton::spring_tangent;
-use super::{Equilibrium, Settings, Status, residuals, unheld_node};
+use super::state::{Equilibrium, Settings, Status, residuals, unheld_node};
 use crate::network::Network;
 use crate::vector::{Vector, add, dot, scale, subtract};
 

@@ -1,7 +1,7 @@
 //! Springs without rest length: one Laplacian system with three right-hand sides (Schek 1974).
 
 use super::cholesky::{Factor, NotPositiveDefinite, SymmetricMatrix};
-use super::{Equilibrium, FIXED, FreeNodes, Settings, Status, residuals};
+use super::state::{Equilibrium, FIXED, FreeNodes, Settings, Status, residuals};
 use crate::network::Network;
 use crate::vector::{Vector, add};
 

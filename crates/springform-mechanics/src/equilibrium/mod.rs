@@ -8,55 +8,12 @@ pub mod cholesky;
 pub mod implicit_euler;
 mod linear;
 mod newton;
+mod state;
+
+pub use state::{Equilibrium, Settings, Status, residuals};
 
 use crate::network::Network;
-use crate::vector::{Vector, add, length, scale, subtract};
-
-/// When to stop.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Settings {
-    /// Largest residual at a free node over the mean spring force.
-    pub tolerance: f64,
-    /// Most iterations: refinements of the linear system, Newton steps, or Euler steps.
-    pub iterations: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings { tolerance: 1e-9, iterations: 200 }
-    }
-}
-
-/// How a solve ended.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Status {
-    /// The residual is within the tolerance.
-    Converged,
-    /// The most iterations were made; the result is the best so far.
-    IterationLimit,
-    /// A free node is not held by any springs that lead to a fixed node.
-    Unheld {
-        /// The node.
-        node: u32,
-    },
-    /// The tangent is singular or a number overflowed.
-    Singular,
-}
-
-/// Result of a solve; n nodes, m springs.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Equilibrium {
-    /// Position of every node [m], n.
-    pub positions: Vec<Vector>,
-    /// Force of every spring [N], tension positive, m.
-    pub forces: Vec<f64>,
-    /// Largest residual at a free node over the mean spring force.
-    pub residual: f64,
-    /// How the solve ended.
-    pub status: Status,
-    /// Iterations made.
-    pub iterations: u32,
-}
+use state::unheld_node;
 
 /// Solves a network that passes [`Network::check`].
 pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
@@ -64,114 +21,4 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
         return Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
     }
     if network.is_linear() { linear::solve(network, settings) } else { newton::solve(network, settings) }
-}
-
-impl Equilibrium {
-    fn at(network: &Network<'_>, positions: Vec<Vector>, status: Status, iterations: u32) -> Self {
-        let forces = network.forces(&positions);
-        let residual = relative_residual(network, &positions, &forces);
-        let finite = residual.is_finite()
-            && forces.iter().all(|force| force.is_finite())
-            && positions.iter().flatten().all(|coordinate| coordinate.is_finite());
-        let status = if finite { status } else { Status::Singular };
-        Equilibrium { positions, forces, residual, status, iterations }
-    }
-}
-
-/// Force out of balance at every free node [N]; zero at fixed nodes.
-pub fn residuals(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
-    let mut residuals = network.loads.to_vec();
-    for (spring, &[a, b]) in network.springs.iter().enumerate() {
-        let (a, b) = (a as usize, b as usize);
-        let along = subtract(positions[b], positions[a]);
-        let pull = scale(along, force_density(network, spring, length(along)));
-        residuals[a] = add(residuals[a], pull);
-        residuals[b] = subtract(residuals[b], pull);
-    }
-    for (residual, &fixed) in residuals.iter_mut().zip(network.fixed.iter()) {
-        if fixed {
-            *residual = [0.0; 3];
-        }
-    }
-    residuals
-}
-
-/// Force over length [N/m]; a spring of no length pulls nowhere.
-fn force_density(network: &Network<'_>, spring: usize, length: f64) -> f64 {
-    let (k, rest) = (network.stiffness[spring], network.rest_length[spring]);
-    if rest == 0.0 {
-        k
-    } else if length > 0.0 {
-        k * (1.0 - rest / length)
-    } else {
-        0.0
-    }
-}
-
-fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> f64 {
-    let largest = residuals(network, positions).into_iter().map(length).fold(0.0, f64::max);
-    if largest == 0.0 { 0.0 } else { largest / force_scale(network, forces) }
-}
-
-/// Mean spring force [N], or what the loads give where no spring carries force.
-fn force_scale(network: &Network<'_>, forces: &[f64]) -> f64 {
-    let mean = forces.iter().map(|force| force.abs()).sum::<f64>() / forces.len().max(1) as f64;
-    let loads = network.loads.iter().map(|&load| length(load)).fold(0.0, f64::max);
-    let stiffness = network.stiffness.iter().zip(network.rest_length.iter());
-    let unstressed = stiffness.map(|(k, rest)| k * rest).fold(0.0, f64::max);
-    mean.max(1e-6 * loads).max(1e-6 * unstressed)
-}
-
-/// A free node from which no springs lead to a fixed node.
-fn unheld_node(network: &Network<'_>) -> Option<u32> {
-    let nodes = network.positions.len();
-    let mut starts = vec![0u32; nodes + 1];
-    for &[a, b] in network.springs.iter() {
-        starts[a as usize + 1] += 1;
-        starts[b as usize + 1] += 1;
-    }
-    for node in 0..nodes {
-        starts[node + 1] += starts[node];
-    }
-    let mut next = starts.clone();
-    let mut neighbours = vec![0u32; 2 * network.springs.len()];
-    for &[a, b] in network.springs.iter() {
-        for (from, to) in [(a, b), (b, a)] {
-            neighbours[next[from as usize] as usize] = to;
-            next[from as usize] += 1;
-        }
-    }
-    let mut held = network.fixed.to_vec();
-    let mut open: Vec<u32> = (0..nodes as u32).filter(|&node| held[node as usize]).collect();
-    while let Some(node) = open.pop() {
-        for at in starts[node as usize]..starts[node as usize + 1] {
-            let far = neighbours[at as usize];
-            if !held[far as usize] {
-                held[far as usize] = true;
-                open.push(far);
-            }
-        }
-    }
-    held.iter().position(|&held| !held).map(|node| node as u32)
-}
-
-/// Numbers of free nodes in a system of equations, and the way back.
-struct FreeNodes {
-    /// Row of every node, or `FIXED`.
-    rows: Vec<u32>,
-    /// Node of every row.
-    nodes: Vec<u32>,
-}
-
-const FIXED: u32 = u32::MAX;
-
-impl FreeNodes {
-    fn new(fixed: &[bool]) -> Self {
-        let nodes: Vec<u32> = (0..fixed.len() as u32).filter(|&node| !fixed[node as usize]).collect();
-        let mut rows = vec![FIXED; fixed.len()];
-        for (row, &node) in nodes.iter().enumerate() {
-            rows[node as usize] = row as u32;
-        }
-        FreeNodes { rows, nodes }
-    }
 }

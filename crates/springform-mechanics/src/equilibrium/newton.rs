@@ -4,7 +4,8 @@
 //! Ko, "Stable but responsive cloth", 2002), so that every step descends.
 
 use super::cholesky::{Factor, SymmetricMatrix};
-use super::{Equilibrium, FIXED, FreeNodes, Settings, Status, linear, residuals};
+use super::linear;
+use super::state::{Equilibrium, FIXED, FreeNodes, Settings, Status, residuals};
 use crate::network::Network;
 use crate::vector::{Vector, add, dot, length, scale, subtract};
 

@@ -10,8 +10,9 @@ use common::Design;
 use proptest::array::uniform3;
 use proptest::collection::vec;
 use proptest::prelude::*;
+use springform_mechanics::assembly::{SpringLaw, assemble};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::network::{Network, SpringLaw};
+use springform_mechanics::network::Network;
 use springform_mechanics::vector::{Vector, length, subtract};
 use springform_topology::expression::{Expression, express};
 
@@ -40,7 +41,7 @@ pub fn nets(edits: usize) -> impl Strategy<Value = Net> {
         anchors.truncate(design.anchors.len());
         let base = (0..mesh.vertex_count()).map(|vertex| drawn[vertex as usize % drawn.len()]);
         let embedding = Embedding::drawn(mesh, anchors, base.collect());
-        let network = Network::from_expression(&expression, &embedding, law);
+        let network = assemble(&expression, &embedding, law);
         Some(Net { design, expression, embedding, network })
     })
 }

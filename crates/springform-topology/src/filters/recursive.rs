@@ -99,11 +99,11 @@ fn refine(forest: &Forest, place: Place, edits: &mut Vec<Edit>) {
         edits.push(Edit::Subdivide { cell: place, children: [forest.content(cell); 4] });
         return;
     };
-    edits.push(Edit::Switch { cell: place, on: true });
+    edits.push(Edit::Toggle { cell: place, on: true });
     for (k, child) in children.into_iter().enumerate() {
         let divided = |cell: CellIndex| forest.expressed_children(cell).is_some();
         if divided(child) {
-            edits.push(Edit::Switch { cell: place.child(k as u8), on: false });
+            edits.push(Edit::Toggle { cell: place.child(k as u8), on: false });
         }
     }
 }

@@ -174,7 +174,7 @@ impl Design {
         });
         match (dice.below(100), stored, childless) {
             (0..50, None, _) if place.level < DEEPEST => Edit::Subdivide { cell: place, children: contents },
-            (0..30, Some(_), _) => Edit::Switch { cell: place, on: !self.forest.is_on(cell) },
+            (0..30, Some(_), _) => Edit::Toggle { cell: place, on: !self.forest.is_on(cell) },
             (30..40, _, Some(children)) => {
                 Edit::Merge { cell: place, children: children.map(|child| self.forest.content(child)) }
             }

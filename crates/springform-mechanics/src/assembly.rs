@@ -1,0 +1,68 @@
+//! Assembly: from an expression and an embedding to a network, and from anchors to an embedding.
+
+use crate::embedding::Embedding;
+use crate::equilibrium::{Settings, Status, solve};
+use crate::network::Network;
+use crate::vector::{Vector, mean};
+use springform_topology::base_mesh::BaseMesh;
+use springform_topology::cell_type::Catalogue;
+use springform_topology::expression::{Expression, express};
+use springform_topology::filters::Method;
+use springform_topology::forest::{Content, Forest};
+use springform_topology::node_key::NodePlace;
+
+/// Stiffness of the springs of a net by where they lie; all rest lengths are zero.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct SpringLaw {
+    /// Stiffness of every spring [N/m].
+    pub stiffness: f64,
+    /// Factor on the stiffness of springs along free rings and rims.
+    pub ring_factor: f64,
+}
+
+impl Default for SpringLaw {
+    fn default() -> Self {
+        SpringLaw { stiffness: 1.0, ring_factor: 1.0 }
+    }
+}
+
+/// The network of an expression: anchors are fixed at their positions, free nodes start at their drawn ones.
+pub fn assemble(expression: &Expression, embedding: &Embedding, law: SpringLaw) -> Network<'static> {
+    let mut positions: Vec<Vector> =
+        expression.nodes.iter().map(|&node| embedding.drawn_position(node)).collect();
+    let mut fixed = vec![false; positions.len()];
+    for (&node, &position) in expression.anchors.iter().zip(&embedding.anchor_positions) {
+        positions[node as usize] = position;
+        fixed[node as usize] = true;
+    }
+    let factor = |ring: bool| if ring { law.ring_factor } else { 1.0 };
+    Network {
+        springs: expression.springs.iter().map(|spring| spring.nodes).collect(),
+        stiffness: expression.springs.iter().map(|spring| law.stiffness * factor(spring.ring)).collect(),
+        rest_length: vec![0.0; expression.springs.len()].into(),
+        loads: vec![[0.0; 3]; positions.len()].into(),
+        positions: positions.into(),
+        fixed: fixed.into(),
+    }
+}
+
+/// An embedding whose base vertices are drawn at the equilibrium of the base mesh, each cell a plain quad of unit
+/// springs; vertices that carry nothing are drawn at the mean of the anchors.
+pub fn embed(mesh: &BaseMesh, anchors: &[u32], anchor_positions: Vec<Vector>) -> Embedding {
+    let middle = mean(anchor_positions.iter().copied());
+    let mut drawn = Embedding::drawn(mesh, anchor_positions, vec![middle; mesh.vertex_count() as usize]);
+    let forest = Forest::new(mesh.faces().len() as u32, Content::QUAD);
+    // A base mesh without a net has nothing to draw better; growing it says why.
+    let Ok(expression) = express(mesh, &forest, &Catalogue::default(), Method::Recursive, anchors) else {
+        return drawn;
+    };
+    let equilibrium = solve(&assemble(&expression, &drawn, SpringLaw::default()), &Settings::default());
+    if equilibrium.status == Status::Converged {
+        for (node, position) in expression.nodes.iter().zip(equilibrium.positions) {
+            if let NodePlace::Vertex(vertex) = node.place() {
+                drawn.draw(vertex, position);
+            }
+        }
+    }
+    drawn
+}
