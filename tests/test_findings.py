@@ -39,7 +39,7 @@ def anchor_after_anchor(cell_type: int) -> tuple[sf.Measures, ...]:
 
 @cache
 def evolved(setting: str) -> tuple[float, float]:
-    """Median springs and median force differential over the seeds, 30 individuals, 60 generations."""
+    """Medians over the seeds of springs and force differential: 30 mutants, 60 generations."""
     method, types = SETTINGS[setting]
     design = sf.load("one-cylinder").with_method(method)
     ends = [

@@ -281,7 +281,9 @@ def test_the_table_is_a_parquet_data_set(tmp_path: Path) -> None:
     run = sf.resume(evolved(tmp_path / "run", generations=3), generations=6)
     dataset = pyarrow.dataset.dataset(tmp_path / "run" / "measures", format="parquet")
     assert len(dataset.files) == 2
-    found = dataset.to_table().sort_by([("generation", "ascending"), ("individual", "ascending")])
+    found = dataset.to_table(use_threads=False).sort_by(
+        [("generation", "ascending"), ("individual", "ascending")]
+    )
     table = run.table
     assert found.column_names == list(table)
     for name, column in table.items():
