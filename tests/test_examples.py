@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+import springform as sf
+
 EXAMPLES = Path(__file__).parent.parent / "examples"
 LAST_LINES = {
     "01_one_cylinder.py": "force differential 3.3",
@@ -27,3 +29,11 @@ def test_example_ends_as_it_should(name: str) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1].startswith(LAST_LINES[name])
+
+
+def test_the_design_in_the_documentation_grows(tmp_path: Path) -> None:
+    text = (EXAMPLES.parent / "docs" / "formats" / "design.md").read_text()
+    first_block = text.split("```toml\n")[1].split("```")[0]
+    path = tmp_path / "two-tubes.toml"
+    path.write_text(first_block)
+    assert sf.load(path).solve().converged

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -221,6 +222,23 @@ def test_a_second_process_is_refused_and_readers_are_not(tmp_path: Path) -> None
         _, said = process.communicate(timeout=30)
     assert process.returncode == 130, said
     assert_rows_are_complete(sf.open_run(folder))
+
+
+def test_of_two_runs_begun_at_once_one_is_refused(tmp_path: Path) -> None:
+    words = ("evolve", "one-cylinder", "--out", tmp_path / "run", *LONG)
+    both = [start(*words) for _ in range(2)]
+    said = [process.communicate(timeout=60)[1] for process in both]
+    assert sorted(process.returncode for process in both) == [0, 2], said
+    assert sf.open_run(tmp_path / "run").generations == 60
+
+
+def test_a_copy_of_a_run_is_a_run(tmp_path: Path) -> None:
+    digest = evolved(tmp_path / "run", generations=3).digest()
+    shutil.copytree(tmp_path / "run", tmp_path / "elsewhere" / "copy")
+    shutil.rmtree(tmp_path / "run")
+    copied = sf.open_run(tmp_path / "elsewhere" / "copy")
+    assert copied.digest() == digest
+    assert sf.resume(copied, generations=6).digest() == evolved(tmp_path / "control").digest()
 
 
 def test_what_another_process_made_meanwhile_is_kept(tmp_path: Path) -> None:
