@@ -11,9 +11,13 @@ use crate::phenotype::{PhenotypeError, Setting};
 use crate::selection::WeightingParameters;
 use rayon::prelude::*;
 use springform_mechanics::measures::Measures;
+use springform_topology::MAX_CELLS;
 use springform_topology::cell_type::CellTypeId;
 use springform_topology::edit::Edit;
 use springform_topology::forest::Forest;
+
+/// Mutants that are evaluated between two questions whether to go on.
+const BATCH: u32 = 256;
 
 /// Who may become the next parent.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -156,13 +160,42 @@ impl Evolution {
     /// # Errors
     /// None: the winner has been evaluated before.
     pub fn advance(&mut self) -> Result<Generation, PhenotypeError> {
+        let individuals = self.batches().flat_map(|first| self.batch(first)).collect();
+        self.choose_parent(individuals)
+    }
+
+    /// Makes one generation like [`Evolution::advance`], but asks now and then whether to go on.
+    ///
+    /// `None` if not: then nothing has changed.
+    ///
+    /// # Errors
+    /// None: the winner has been evaluated before.
+    pub fn advance_while(
+        &mut self,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<Option<Generation>, PhenotypeError> {
+        let mut individuals = Vec::with_capacity(self.parameters.population as usize);
+        for first in self.batches() {
+            individuals.extend(self.batch(first));
+            if !go_on() {
+                return Ok(None);
+            }
+        }
+        self.choose_parent(individuals).map(Some)
+    }
+
+    fn batches(&self) -> impl Iterator<Item = u32> + use<> {
+        (0..self.parameters.population).step_by(BATCH as usize)
+    }
+
+    fn batch(&self, first: u32) -> Vec<Individual> {
         let number = self.generation + 1;
-        let individuals: Vec<Individual> = self.threads.install(|| {
-            (0..self.parameters.population)
-                .into_par_iter()
-                .map(|index| self.individual(number, index))
-                .collect()
-        });
+        let last = self.parameters.population.min(first.saturating_add(BATCH));
+        self.threads
+            .install(|| (first..last).into_par_iter().map(|index| self.individual(number, index)).collect())
+    }
+
+    fn choose_parent(&mut self, individuals: Vec<Individual>) -> Result<Generation, PhenotypeError> {
         let winner = self.choose(&individuals);
         if let Some(index) = winner {
             let individual = &individuals[index];
@@ -170,8 +203,8 @@ impl Evolution {
             Edit::apply_all(&individual.edits, &mut forest)?;
             self.parent = Parent::new(&self.setting, forest, individual.strategy, individual.suf)?;
         }
-        self.generation = number;
-        Ok(Generation { number, individuals, winner })
+        self.generation += 1;
+        Ok(Generation { number: self.generation, individuals, winner })
     }
 
     /// Draws and evaluates one mutant of the present parent, the same whenever it is asked for.
@@ -213,6 +246,9 @@ impl Evolution {
         let mut forest = self.parent.forest.clone();
         Edit::apply_all(edits, &mut forest)?;
         edits.extend(self.setting.close(&mut forest)?);
+        if forest.stored() > MAX_CELLS {
+            return Err(PhenotypeError::TooManyCells);
+        }
         Ok(forest)
     }
 

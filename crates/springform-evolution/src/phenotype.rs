@@ -54,6 +54,9 @@ pub enum PhenotypeError {
     /// An edit does not fit.
     #[error(transparent)]
     Edit(#[from] EditError),
+    /// More cells than [`springform_topology::MAX_CELLS`].
+    #[error("the forest has too many cells")]
+    TooManyCells,
     /// No equilibrium.
     #[error("the net finds no equilibrium: {0:?}, residual {1:.3e}")]
     Equilibrium(Status, f64),

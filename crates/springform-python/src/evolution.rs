@@ -128,7 +128,18 @@ impl Evolution {
     /// Makes one generation: columns of measures by name, the winner, its edits and strategy.
     fn advance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let evolution = &mut self.evolution;
-        let generation = py.detach(|| evolution.advance()).map_err(|error| refusal("forest", error))?;
+        let mut signal = Ok(());
+        let generation = py.detach(|| {
+            evolution.advance_while(|| {
+                signal = Python::attach(|py| py.check_signals());
+                signal.is_ok()
+            })
+        });
+        signal?;
+        let generation = generation.map_err(|error| refusal("forest", error))?;
+        let Some(generation) = generation else {
+            return Err(refusal("signal", "the generation was given up"));
+        };
         let result = PyDict::new(py);
         result.set_item("columns", table(py, &generation)?)?;
         result.set_item("winner", generation.winner)?;

@@ -16,7 +16,7 @@ use springform_mechanics::vector::Vector;
 use springform_topology::address::Place;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
-use springform_topology::expression::Expression;
+use springform_topology::expression::{Expression, ExpressionError};
 use springform_topology::filters::Method;
 use springform_topology::forest::{self, Content, NodePair, Override};
 use springform_topology::node_key::NodeKey;
@@ -188,7 +188,7 @@ impl Setting {
     fn grow<'py>(slf: Bound<'py, Self>, forest: &Forest) -> PyResult<(Net, Bound<'py, PyDict>)> {
         let (py, setting) = (slf.py(), &slf.get().setting);
         let (expression, network) =
-            py.detach(|| setting.grow(&forest.forest)).map_err(|error| refusal("forest", error))?;
+            py.detach(|| setting.grow(&forest.forest)).map_err(|error| expression_refusal(&error))?;
         let arrays = PyDict::new(py);
         arrays.set_item("positions", rows(py, network.positions.into_owned())?)?;
         arrays.set_item("springs", rows(py, network.springs.into_owned())?)?;
@@ -322,6 +322,18 @@ impl Net {
             .collect();
         result.set_item("apertures", openings)?;
         Ok(result)
+    }
+}
+
+/// The key of what an expression error is about, and the error.
+fn expression_refusal(error: &ExpressionError) -> PyErr {
+    match error {
+        ExpressionError::LooseAnchor(anchor) => {
+            let problem = "the anchor is left without springs after filtering; keep a path to another one";
+            refusal(format!("framework.anchors[{anchor}]"), problem)
+        }
+        ExpressionError::Type { place, .. } => refusal(format!("forest.cells.{}", place.face), error),
+        ExpressionError::Empty => refusal("forest", error),
     }
 }
 

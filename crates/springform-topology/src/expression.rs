@@ -73,7 +73,7 @@ pub enum ExpressionError {
     #[error("no spring lies on a path between two anchors: the net is empty after filtering")]
     Empty,
     /// An anchor has no springs, even with its cells as plain quads.
-    #[error("anchor {0} is left without springs after filtering")]
+    #[error("anchor {0}, counted from 0, is left without springs after filtering")]
     LooseAnchor(usize),
 }
 

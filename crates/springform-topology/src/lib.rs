@@ -28,3 +28,6 @@ pub const MAX_LEVEL: u8 = 20;
 
 /// Largest number of top-level cells that a base mesh may have (node keys hold a face in 20 bits).
 pub const MAX_FACES: usize = (1 << 20) - 1;
+
+/// Largest number of cells that a forest is grown to; a mutant with more is invalid.
+pub const MAX_CELLS: usize = 4_000_000;

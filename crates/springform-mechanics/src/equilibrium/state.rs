@@ -93,7 +93,9 @@ fn force_density(network: &Network<'_>, spring: usize, length: f64) -> f64 {
 }
 
 fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> f64 {
-    let largest = residuals(network, positions).into_iter().map(length).fold(0.0, f64::max);
+    // `f64::max` would pass over what is not a number.
+    let larger = |a: f64, b: f64| if a >= b { a } else { b };
+    let largest = residuals(network, positions).into_iter().map(length).fold(0.0, larger);
     if largest == 0.0 { 0.0 } else { largest / force_scale(network, forces) }
 }
 
