@@ -118,8 +118,8 @@ class _NetworkArrays(Protocol):
         """(m, 2)."""
 
     @property
-    def fixed(self) -> NDArray[np.bool_]:
-        """(n,)."""
+    def fixed_axes(self) -> NDArray[np.bool_]:
+        """(n, 3)."""
 
     @property
     def stiffness(self) -> _Floats:
@@ -128,6 +128,14 @@ class _NetworkArrays(Protocol):
     @property
     def rest_length(self) -> _Floats:
         """(m,) [m]."""
+
+    @property
+    def force(self) -> _Floats:
+        """(m,) [N]."""
+
+    @property
+    def sense(self) -> NDArray[np.int8]:
+        """(m,): 1 tension, 0 both, -1 compression."""
 
     @property
     def loads(self) -> _Floats:
@@ -164,6 +172,7 @@ class _MeasuresAndApertures(_Measures):
 
 class _Equilibrium(TypedDict):
     positions: _Floats
+    reactions: _Floats
     forces: _Floats
     residual: float
     converged: bool

@@ -2,7 +2,7 @@
 
 use crate::embedding::Embedding;
 use crate::equilibrium::{Settings, Status, solve};
-use crate::network::Network;
+use crate::network::{Network, Sense};
 use crate::vector::{Vector, mean};
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
@@ -30,16 +30,18 @@ impl Default for SpringLaw {
 pub fn assemble(expression: &Expression, embedding: &Embedding, law: SpringLaw) -> Network<'static> {
     let mut positions: Vec<Vector> =
         expression.nodes.iter().map(|&node| embedding.drawn_position(node)).collect();
-    let mut fixed = vec![false; positions.len()];
+    let mut fixed = vec![[false; 3]; positions.len()];
     for (&node, &position) in expression.anchors.iter().zip(&embedding.anchor_positions) {
         positions[node as usize] = position;
-        fixed[node as usize] = true;
+        fixed[node as usize] = [true; 3];
     }
     let factor = |ring: bool| if ring { law.ring_factor } else { 1.0 };
     Network {
         springs: expression.springs.iter().map(|spring| spring.nodes).collect(),
         stiffness: expression.springs.iter().map(|spring| law.stiffness * factor(spring.ring)).collect(),
         rest_length: vec![0.0; expression.springs.len()].into(),
+        force: vec![0.0; expression.springs.len()].into(),
+        sense: vec![Sense::Both; expression.springs.len()].into(),
         loads: vec![[0.0; 3]; positions.len()].into(),
         positions: positions.into(),
         fixed: fixed.into(),

@@ -29,7 +29,7 @@ fn rotated(vector: Vector, axis: Vector, angle: f64) -> Vector {
 
 /// Free nodes by a dense system, assembled spring by spring.
 fn dense_solution(network: &Network<'_>) -> Vec<Vector> {
-    let free: Vec<usize> = (0..network.positions.len()).filter(|&node| !network.fixed[node]).collect();
+    let free: Vec<usize> = (0..network.positions.len()).filter(|&node| !network.fixed[node][0]).collect();
     let mut matrix = vec![vec![0.0; free.len()]; free.len()];
     let mut sides: Vec<Vector> = free.iter().map(|&node| network.loads[node]).collect();
     let row = |node: u32| free.iter().position(|&known| known == node as usize);
@@ -107,7 +107,7 @@ proptest! {
     #[test]
     fn starts_do_not_matter(net in nets(24), elsewhere in vec(point(), 13)) {
         let mut moved = net.network.clone();
-        for node in (0..moved.positions.len()).filter(|&node| !net.network.fixed[node]) {
+        for node in (0..moved.positions.len()).filter(|&node| !net.network.fixed[node][0]) {
             moved.positions.to_mut()[node] = elsewhere[node % elsewhere.len()];
         }
         let (first, second) =
@@ -269,7 +269,7 @@ proptest! {
 
 /// Nodes that springs lead to from fixed nodes, by repeated sweeps.
 fn reached(network: &Network<'_>) -> Vec<bool> {
-    let mut reached = network.fixed.to_vec();
+    let mut reached: Vec<bool> = network.fixed.iter().map(|axes| axes[0]).collect();
     for _ in 0..reached.len() {
         for &[a, b] in network.springs.iter() {
             let either = reached[a as usize] || reached[b as usize];

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArr
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status, implicit_euler};
-use springform_mechanics::network::Network;
+use springform_mechanics::network::{Network, Sense};
 use springform_mechanics::vector::Vector;
 use std::borrow::Cow;
 
@@ -27,9 +27,11 @@ pub fn values<'a, T: numpy::Element>(key: &str, array: &'a PyReadonlyArray1<'_, 
 pub struct NetworkArrays<'py> {
     positions: PyReadonlyArray2<'py, f64>,
     springs: PyReadonlyArray2<'py, u32>,
-    fixed: PyReadonlyArray1<'py, bool>,
+    fixed_axes: PyReadonlyArray2<'py, bool>,
     stiffness: PyReadonlyArray1<'py, f64>,
     rest_length: PyReadonlyArray1<'py, f64>,
+    force: PyReadonlyArray1<'py, f64>,
+    sense: PyReadonlyArray1<'py, i8>,
     loads: PyReadonlyArray2<'py, f64>,
 }
 
@@ -42,16 +44,30 @@ impl NetworkArrays<'_> {
         if self.springs.shape()[1] != 2 || !self.springs.is_c_contiguous() {
             return Err(refusal("springs", "must be a C-contiguous array of shape (m, 2)"));
         }
+        if self.fixed_axes.shape()[1] != 3 || !self.fixed_axes.is_c_contiguous() {
+            return Err(refusal("fixed_axes", "must be a C-contiguous array of shape (n, 3)"));
+        }
         let network = Network {
             positions: Cow::Borrowed(vectors("positions", &self.positions)?),
             springs: Cow::Borrowed(self.springs.as_slice()?.as_chunks().0),
             stiffness: Cow::Borrowed(values("stiffness", &self.stiffness)?),
             rest_length: Cow::Borrowed(values("rest_length", &self.rest_length)?),
             loads: Cow::Borrowed(vectors("loads", &self.loads)?),
-            fixed: Cow::Borrowed(values("fixed", &self.fixed)?),
+            force: Cow::Borrowed(values("force", &self.force)?),
+            sense: values("sense", &self.sense)?.iter().map(|&sense| self::sense(sense)).collect(),
+            fixed: Cow::Borrowed(self.fixed_axes.as_slice()?.as_chunks().0),
         };
         network.check().map_err(|error| refusal("network", error))?;
         Ok(network)
+    }
+}
+
+/// 1 pulls only, −1 pushes only, 0 does both.
+fn sense(number: i8) -> Sense {
+    match number {
+        1.. => Sense::Tension,
+        0 => Sense::Both,
+        _ => Sense::Compression,
     }
 }
 
@@ -78,7 +94,7 @@ pub fn solve<'py>(
             ));
         }
     };
-    equilibrium_dict(py, result)
+    equilibrium_dict(py, &network, result)
 }
 
 /// Force out of balance at every free node of a bare network, (n, 3) N.
@@ -88,7 +104,11 @@ pub fn residuals<'py>(py: Python<'py>, network: NetworkArrays<'py>) -> PyResult<
     rows(py, equilibrium::residuals(&network, &network.positions))
 }
 
-fn equilibrium_dict(py: Python<'_>, equilibrium: Equilibrium) -> PyResult<Bound<'_, PyDict>> {
+fn equilibrium_dict<'py>(
+    py: Python<'py>,
+    network: &Network<'_>,
+    equilibrium: Equilibrium,
+) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let reason = match equilibrium.status {
         Status::Converged => String::new(),
@@ -103,6 +123,7 @@ fn equilibrium_dict(py: Python<'_>, equilibrium: Equilibrium) -> PyResult<Bound<
         }
         Status::Singular => "the stiffness matrix is singular or numbers overflowed".to_owned(),
     };
+    result.set_item("reactions", rows(py, equilibrium::reactions(network, &equilibrium.positions))?)?;
     result.set_item("positions", rows(py, equilibrium.positions)?)?;
     result.set_item("forces", PyArray1::from_vec(py, equilibrium.forces))?;
     result.set_item("residual", equilibrium.residual)?;
@@ -129,6 +150,8 @@ impl ImplicitEuler {
             springs: Cow::Owned(borrowed.springs.into_owned()),
             stiffness: Cow::Owned(borrowed.stiffness.into_owned()),
             rest_length: Cow::Owned(borrowed.rest_length.into_owned()),
+            force: Cow::Owned(borrowed.force.into_owned()),
+            sense: Cow::Owned(borrowed.sense.into_owned()),
             loads: Cow::Owned(borrowed.loads.into_owned()),
             fixed: Cow::Owned(borrowed.fixed.into_owned()),
         };
@@ -145,6 +168,6 @@ impl ImplicitEuler {
             euler.advance();
             euler.state(&settings, steps)
         });
-        equilibrium_dict(py, state)
+        equilibrium_dict(py, self.euler.network(), state)
     }
 }

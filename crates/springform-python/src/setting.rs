@@ -192,7 +192,8 @@ impl Setting {
         let arrays = PyDict::new(py);
         arrays.set_item("positions", rows(py, network.positions.into_owned())?)?;
         arrays.set_item("springs", rows(py, network.springs.into_owned())?)?;
-        arrays.set_item("fixed", PyArray1::from_vec(py, network.fixed.into_owned()))?;
+        let fixed = network.fixed.iter().map(|axes| axes[0]);
+        arrays.set_item("fixed", PyArray1::from_iter(py, fixed))?;
         arrays.set_item("stiffness", PyArray1::from_vec(py, network.stiffness.into_owned()))?;
         arrays.set_item("rest_length", PyArray1::from_vec(py, network.rest_length.into_owned()))?;
         arrays.set_item("loads", rows(py, network.loads.into_owned())?)?;

@@ -4,7 +4,7 @@
 //! converging variant of Bi-CG", 1992. Departures from the particle library that the paper used: anchors are
 //! taken out of the system instead of made heavy, and positions stay in double precision.
 
-use super::newton::spring_tangent;
+use super::newton::{own_stiffness, spring_tangent};
 use super::state::{Equilibrium, Settings, Status, residuals, unheld_node};
 use crate::network::Network;
 use crate::vector::{Vector, add, dot, scale, subtract};
@@ -45,9 +45,11 @@ impl<'a> ImplicitEuler<'a> {
     /// A net at rest at its start positions.
     pub fn new(network: Network<'a>, motion: Motion) -> Self {
         let mut masses = vec![0.0; network.positions.len()];
-        for (&[a, b], &k) in network.springs.iter().zip(network.stiffness.iter()) {
-            masses[a as usize] += k;
-            masses[b as usize] += k;
+        let lengths = network.lengths(&network.positions);
+        for (spring, &[a, b]) in network.springs.iter().enumerate() {
+            let own = own_stiffness(&network, spring, lengths[spring]);
+            masses[a as usize] += own;
+            masses[b as usize] += own;
         }
         ImplicitEuler {
             positions: network.positions.to_vec(),
@@ -56,6 +58,11 @@ impl<'a> ImplicitEuler<'a> {
             masses,
             motion,
         }
+    }
+
+    /// The network that moves.
+    pub fn network(&self) -> &Network<'a> {
+        &self.network
     }
 
     /// Positions now [m].
@@ -73,7 +80,7 @@ impl<'a> ImplicitEuler<'a> {
             .map(|node| {
                 let drag = scale(self.velocities[node], self.motion.drag * self.masses[node]);
                 let pull = subtract(subtract(force[node], drag), scale(stiff[node], step));
-                if self.network.fixed[node] { [0.0; 3] } else { scale(pull, step) }
+                free_part(&self.network, node, scale(pull, step), [0.0; 3])
             })
             .collect();
         let change = bicgstab(&system, &side);
@@ -142,15 +149,18 @@ impl System<'_> {
         let mut product = self.stiffness_times(x);
         let inertia = 1.0 + self.step * self.euler.motion.drag;
         for (node, row) in product.iter_mut().enumerate() {
-            *row = if self.euler.network.fixed[node] {
-                x[node]
-            } else {
-                let still = scale(x[node], inertia * self.euler.masses[node]);
-                add(still, scale(*row, self.step * self.step))
-            };
+            let still = scale(x[node], inertia * self.euler.masses[node]);
+            let moving = add(still, scale(*row, self.step * self.step));
+            *row = free_part(&self.euler.network, node, moving, x[node]);
         }
         product
     }
+}
+
+/// `free` along the axes on which a node is free, `held` along the others.
+fn free_part(network: &Network<'_>, node: usize, free: Vector, held: Vector) -> Vector {
+    let axes = network.fixed[node];
+    std::array::from_fn(|axis| if axes[axis] { held[axis] } else { free[axis] })
 }
 
 fn bicgstab(system: &System<'_>, side: &[Vector]) -> Vec<Vector> {

@@ -1,13 +1,13 @@
-//! Springs without rest length: one Laplacian system with three right-hand sides (Schek 1974).
+//! Force as stiffness times length: one Laplacian system with three right-hand sides (Schek 1974).
 
 use super::cholesky::{Factor, NotPositiveDefinite, SymmetricMatrix};
-use super::state::{Equilibrium, FIXED, FreeNodes, Settings, Status, residuals};
+use super::state::{Equilibrium, Settings, Status, residuals};
 use crate::network::Network;
 use crate::vector::{Vector, add};
 
-/// Solves the network whatever its rest lengths, as if they were zero. Every free node must be held.
+/// Solves a network that is linear ([`Network::is_linear`]) and held.
 pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
-    let free = FreeNodes::new(&network.fixed);
+    let free = FreeNodes::new(network);
     let mut positions = network.positions.to_vec();
     let Ok(factor) = laplacian(network, &free) else {
         return Equilibrium::at(network, positions, Status::Singular, 0);
@@ -54,4 +54,26 @@ fn laplacian(network: &Network<'_>, free: &FreeNodes) -> Result<Factor, NotPosit
         }
     }
     Factor::new(&SymmetricMatrix::new(diagonal, &entries))
+}
+
+/// Numbers of free nodes in the system, and the way back.
+struct FreeNodes {
+    /// Row of every node, or `FIXED`.
+    rows: Vec<u32>,
+    /// Node of every row.
+    nodes: Vec<u32>,
+}
+
+const FIXED: u32 = u32::MAX;
+
+impl FreeNodes {
+    fn new(network: &Network<'_>) -> Self {
+        let fixed = |node: &u32| network.fixed[*node as usize].contains(&true);
+        let nodes: Vec<u32> = (0..network.positions.len() as u32).filter(|node| !fixed(node)).collect();
+        let mut rows = vec![FIXED; network.positions.len()];
+        for (row, &node) in nodes.iter().enumerate() {
+            rows[node as usize] = row as u32;
+        }
+        FreeNodes { rows, nodes }
+    }
 }

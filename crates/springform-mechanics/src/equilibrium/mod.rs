@@ -1,7 +1,7 @@
 //! Equilibrium: positions at which springs and loads balance at every free node.
 //!
-//! Zero rest lengths give one linear system, solved directly. Other rest lengths are solved by Newton's method
-//! with a line search. [`implicit_euler`] moves a net to the same equilibrium step by step.
+//! Where force is stiffness times length, one linear system is solved directly. Other nets are solved by Newton's
+//! method, damped so that the energy falls. [`implicit_euler`] moves a net to the same equilibrium step by step.
 //! A solve returns its status; it never prints and never panics on a bad net.
 
 pub mod cholesky;
@@ -10,7 +10,7 @@ mod linear;
 mod newton;
 mod state;
 
-pub use state::{Equilibrium, Settings, Status, residuals};
+pub use state::{Equilibrium, Settings, Status, reactions, residuals};
 
 use crate::network::Network;
 use state::unheld_node;

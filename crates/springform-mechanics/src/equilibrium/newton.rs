@@ -1,21 +1,29 @@
-//! Springs with rest lengths: Newton's method on the potential energy with a line search.
+//! Springs of any law: Newton's method on the potential energy, damped after Levenberg and Marquardt.
 //!
-//! The transverse part of a compressed spring's tangent is left out where the exact tangent is indefinite (Choi &
-//! Ko, "Stable but responsive cloth", 2002), so that every step descends.
+//! The undamped exact tangent is tried first. Where it is indefinite, or its step does not lower the energy, the
+//! transverse part of pushing springs is left out (Choi & Ko, "Stable but responsive cloth", 2002) and a share of each
+//! node's own stiffness is added to the diagonal (Marquardt, "An algorithm for least-squares estimation of nonlinear
+//! parameters", 1963), more and more until the energy falls. So a net needs no good start: springs may be slack,
+//! straight under transverse load, or far off.
 
 use super::cholesky::{Factor, SymmetricMatrix};
-use super::linear;
-use super::state::{Equilibrium, FIXED, FreeNodes, Settings, Status, residuals};
+use super::state::{Equilibrium, Settings, Status, force_density, residuals};
 use crate::network::Network;
-use crate::vector::{Vector, add, dot, length, scale, subtract};
+use crate::vector::{Vector, dot, length, scale, subtract};
 
-/// Transverse stiffness that a metric keeps at least, as a share of k.
-const TRANSVERSE_FLOOR: f64 = 1e-6;
+/// Damping after a refused undamped step, and the least that is kept, as a share of a node's own stiffness.
+const LEAST_DAMPING: f64 = 1e-9;
+
+/// Damping beyond which a step is too short to matter.
+const MOST_DAMPING: f64 = 1e12;
+
+/// Part of a spring's length by which nodes that coincide are parted, so that it has a direction.
+const PARTING: f64 = 1e-6;
 
 pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
-    let free = FreeNodes::new(&network.fixed);
-    let mut positions = start(network, settings);
-    let mut energy = Potential::new(network, &positions);
+    let free = FreeAxes::new(network);
+    let mut positions = parted(network);
+    let mut damping = 0.0;
     let mut iterations = 0;
     loop {
         let result = Equilibrium::at(network, positions, Status::Converged, iterations);
@@ -25,26 +33,67 @@ pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
         if iterations >= settings.iterations {
             return Equilibrium { status: Status::IterationLimit, ..result };
         }
-        positions = result.positions;
-        let out_of_balance = residuals(network, &positions);
-        let Some(step) = newton_step(network, &free, &positions, &out_of_balance) else {
-            return Equilibrium::at(network, positions, Status::Singular, iterations);
+        let Some((moved, used)) = descend(network, &free, &result, damping) else {
+            return Equilibrium { status: Status::Singular, ..result };
         };
-        let slope: f64 =
-            free.nodes.iter().zip(&step).map(|(&n, &s)| dot(out_of_balance[n as usize], s)).sum();
-        let (moved, lower) = search(network, &free, &positions, &step, energy, slope);
         positions = moved;
-        energy = lower;
+        damping = if used > LEAST_DAMPING { 0.1 * used } else { 0.0 };
         iterations += 1;
     }
 }
 
-/// The given positions, or the net without rest lengths where a spring has no direction.
-fn start(network: &Network<'_>, settings: &Settings) -> Vec<Vector> {
-    let lengths = network.lengths(&network.positions);
-    let directed =
-        lengths.iter().zip(network.rest_length.iter()).all(|(&length, &rest)| rest == 0.0 || length > 0.0);
-    if directed { network.positions.to_vec() } else { linear::solve(network, settings).positions }
+/// The start, with the ends of springs of no length a little apart where their force needs a direction.
+fn parted(network: &Network<'_>) -> Vec<Vector> {
+    let mut positions = network.positions.to_vec();
+    for (spring, &[a, b]) in network.springs.iter().enumerate() {
+        let along = subtract(positions[b as usize], positions[a as usize]);
+        if length(along) > 0.0 || network.force_at(spring, 0.0) == 0.0 {
+            continue;
+        }
+        let node = if network.fixed[b as usize] == [true; 3] { a } else { b } as usize;
+        let size = PARTING * network.rest_length[spring].max(PARTING);
+        for axis in (0..3).filter(|&axis| !network.fixed[node][axis]) {
+            // Different along each axis and for each spring, so that no symmetry holds them together.
+            positions[node][axis] += size * (1.0 + 0.1 * ((spring + axis) % 7) as f64);
+        }
+    }
+    positions
+}
+
+/// A step that lowers the energy, and the damping that it took; `None` if there is none.
+fn descend(
+    network: &Network<'_>,
+    free: &FreeAxes,
+    now: &Equilibrium,
+    damping: f64,
+) -> Option<(Vec<Vector>, f64)> {
+    let out_of_balance = residuals(network, &now.positions);
+    let before = Potential::new(network, &now.positions);
+    let mut damping = damping;
+    while damping <= MOST_DAMPING {
+        if let Some(step) = newton_step(network, free, &now.positions, &out_of_balance, damping) {
+            let mut moved = now.positions.clone();
+            let mut slope = 0.0;
+            for (row, &(node, axis)) in free.axes.iter().enumerate() {
+                moved[node as usize][axis] += step[row][0];
+                slope += step[row][0] * out_of_balance[node as usize][axis];
+            }
+            let after = Potential::new(network, &moved);
+            let falls = after.energy <= before.energy - 1e-4 * slope;
+            // Near equilibrium rounding hides the fall of energy, not that of the residual.
+            let level = after.energy <= before.energy + before.noise;
+            let calmer = || largest(&residuals(network, &moved)) < largest(&out_of_balance);
+            if falls || (level && calmer()) {
+                return Some((moved, damping));
+            }
+        }
+        damping = if damping == 0.0 { LEAST_DAMPING } else { 10.0 * damping };
+    }
+    None
+}
+
+fn largest(vectors: &[Vector]) -> f64 {
+    vectors.iter().map(|&vector| length(vector)).fold(0.0, f64::max)
 }
 
 /// Potential energy [J] of springs and dead loads.
@@ -58,93 +107,101 @@ struct Potential {
 impl Potential {
     fn new(network: &Network<'_>, positions: &[Vector]) -> Potential {
         let lengths = network.lengths(positions).into_iter().enumerate();
-        let stretch = |(spring, length): (usize, f64)| {
-            0.5 * network.stiffness[spring] * (length - network.rest_length[spring]).powi(2)
-        };
-        let springs: f64 = lengths.map(stretch).sum();
+        let springs: f64 = lengths.map(|(spring, length)| network.energy_at(spring, length)).sum();
         let work = || network.loads.iter().zip(positions).map(|(&load, &position)| dot(load, position));
         let loads: f64 = work().sum();
-        let size = springs + work().map(f64::abs).sum::<f64>();
+        let size = springs.abs() + work().map(f64::abs).sum::<f64>();
         Potential { energy: springs - loads, noise: 1e-14 * size }
     }
 }
 
-/// The exact tangent where it is positive definite, else the clamped one.
 fn newton_step(
     network: &Network<'_>,
-    free: &FreeNodes,
+    free: &FreeAxes,
     positions: &[Vector],
     out_of_balance: &[Vector],
-) -> Option<Vec<Vector>> {
-    let factor = Factor::new(&tangent(network, free, positions, false))
-        .or_else(|_| Factor::new(&tangent(network, free, positions, true)))
-        .ok()?;
-    let mut sides: Vec<[f64; 1]> =
-        free.nodes.iter().flat_map(|&node| out_of_balance[node as usize].map(|value| [value])).collect();
-    factor.solve(&mut sides);
-    Some(sides.chunks_exact(3).map(|row| [row[0][0], row[1][0], row[2][0]]).collect())
+    damping: f64,
+) -> Option<Vec<[f64; 1]>> {
+    let factor = Factor::new(&tangent(network, free, positions, damping)).ok()?;
+    let mut step: Vec<[f64; 1]> =
+        free.axes.iter().map(|&(node, axis)| [out_of_balance[node as usize][axis]]).collect();
+    factor.solve(&mut step);
+    Some(step)
 }
 
-fn tangent(network: &Network<'_>, free: &FreeNodes, positions: &[Vector], clamped: bool) -> SymmetricMatrix {
-    let mut diagonal = vec![0.0; 3 * free.nodes.len()];
+/// The exact tangent without damping; with damping, one that is positive definite.
+fn tangent(network: &Network<'_>, free: &FreeAxes, positions: &[Vector], damping: f64) -> SymmetricMatrix {
+    let clamped = damping > 0.0;
+    let mut diagonal = vec![0.0; free.axes.len()];
     let mut entries = Vec::with_capacity(15 * network.springs.len());
-    for (spring, &[a, b]) in network.springs.iter().enumerate() {
-        let block =
-            spring_tangent(network, spring, subtract(positions[b as usize], positions[a as usize]), clamped);
-        let rows = [free.rows[a as usize], free.rows[b as usize]];
-        for row in rows.into_iter().filter(|&row| row != FIXED) {
-            for i in 0..3 {
-                diagonal[3 * row as usize + i] += block[i][i];
-                entries.extend((0..i).map(|j| (3 * row + i as u32, 3 * row + j as u32, block[i][j])));
+    for (spring, &ends) in network.springs.iter().enumerate() {
+        let along = subtract(positions[ends[1] as usize], positions[ends[0] as usize]);
+        let block = spring_tangent(network, spring, along, clamped);
+        let own = damping * own_stiffness(network, spring, length(along));
+        let rows = ends.map(|node| free.rows[node as usize]);
+        for rows in rows {
+            for i in (0..3).filter(|&i| rows[i] != FIXED) {
+                diagonal[rows[i] as usize] += block[i][i] + own;
+                let below = (0..i).filter(|&j| rows[j] != FIXED);
+                entries.extend(below.map(|j| (rows[i], rows[j], block[i][j])));
             }
         }
-        if rows.iter().all(|&row| row != FIXED) {
-            let place = |i: usize, j: usize| (3 * rows[0] + i as u32, 3 * rows[1] + j as u32, -block[i][j]);
-            entries.extend((0..9).map(|at| place(at / 3, at % 3)));
+        for (i, j) in (0..9).map(|at| (at / 3, at % 3)) {
+            if rows[0][i] != FIXED && rows[1][j] != FIXED {
+                entries.push((rows[0][i], rows[1][j], -block[i][j]));
+            }
         }
     }
     SymmetricMatrix::new(diagonal, &entries)
 }
 
-/// k [(1 − r/L)(I − n nᵀ) + n nᵀ], with the first factor kept above a floor when `clamped`.
+/// Stiffness that a spring has of its own, slack or not [N/m].
+pub(super) fn own_stiffness(network: &Network<'_>, spring: usize, length: f64) -> f64 {
+    let constant = network.force[spring].abs();
+    network.stiffness[spring].max(if length > 0.0 { constant / length } else { constant })
+}
+
+/// k n nᵀ + (F/L)(I − n nᵀ), the second term not below zero when `clamped`.
 pub(super) fn spring_tangent(
     network: &Network<'_>,
     spring: usize,
     along: Vector,
     clamped: bool,
 ) -> [Vector; 3] {
-    let (k, rest, length) = (network.stiffness[spring], network.rest_length[spring], length(along));
-    let exact = if rest == 0.0 { 1.0 } else { 1.0 - rest / length.max(f64::MIN_POSITIVE) };
-    let transverse = if clamped { exact.max(TRANSVERSE_FLOOR) } else { exact };
+    let length = length(along);
+    let (axial, exact) = (network.stiffness_at(spring, length), force_density(network, spring, length));
+    let transverse = if clamped { exact.max(0.0) } else { exact };
     let normal = if length > 0.0 { scale(along, 1.0 / length) } else { [0.0; 3] };
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             let identity = f64::from(u8::from(i == j));
-            k * (transverse * identity + (1.0 - transverse) * normal[i] * normal[j])
+            transverse * identity + (axial - transverse) * normal[i] * normal[j]
         })
     })
 }
 
-/// Halves the step until the energy falls enough (Armijo); near equilibrium rounding hides the fall, and the
-/// full step is taken if it does not raise the energy noticeably.
-fn search(
-    network: &Network<'_>,
-    free: &FreeNodes,
-    positions: &[Vector],
-    step: &[Vector],
-    before: Potential,
-    slope: f64,
-) -> (Vec<Vector>, Potential) {
-    let mut share = 1.0;
-    loop {
-        let mut moved = positions.to_vec();
-        for (&node, &step) in free.nodes.iter().zip(step) {
-            moved[node as usize] = add(moved[node as usize], scale(step, share));
-        }
-        let reached = Potential::new(network, &moved);
-        if reached.energy <= before.energy - 1e-4 * share * slope + before.noise || share < 1e-10 {
-            return (moved, reached);
-        }
-        share *= 0.5;
+/// Numbers of the axes along which nodes are free, and the way back.
+struct FreeAxes {
+    /// Rows of the three axes of every node, or `FIXED`.
+    rows: Vec<[u32; 3]>,
+    /// Node and axis of every row.
+    axes: Vec<(u32, usize)>,
+}
+
+const FIXED: u32 = u32::MAX;
+
+impl FreeAxes {
+    fn new(network: &Network<'_>) -> Self {
+        let mut axes = Vec::new();
+        let mut number = |node: usize, axis: usize| {
+            if network.fixed[node][axis] {
+                return FIXED;
+            }
+            axes.push((node as u32, axis));
+            (axes.len() - 1) as u32
+        };
+        let rows = (0..network.positions.len()).map(|node| [0, 1, 2].map(|axis| number(node, axis)));
+        let rows = rows.collect();
+        FreeAxes { rows, axes }
     }
 }

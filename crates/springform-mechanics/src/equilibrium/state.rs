@@ -14,7 +14,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-9, iterations: 200 }
+        Settings { tolerance: 1e-9, iterations: 500 }
     }
 }
 
@@ -62,34 +62,43 @@ impl Equilibrium {
     }
 }
 
-/// Force out of balance at every free node [N]; zero at fixed nodes.
+/// Force out of balance at every node [N]; zero along axes that hold it.
 pub fn residuals(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
-    let mut residuals = network.loads.to_vec();
-    for (spring, &[a, b]) in network.springs.iter().enumerate() {
-        let (a, b) = (a as usize, b as usize);
-        let along = subtract(positions[b], positions[a]);
-        let pull = scale(along, force_density(network, spring, length(along)));
-        residuals[a] = add(residuals[a], pull);
-        residuals[b] = subtract(residuals[b], pull);
-    }
-    for (residual, &fixed) in residuals.iter_mut().zip(network.fixed.iter()) {
-        if fixed {
-            *residual = [0.0; 3];
-        }
+    let mut residuals = unbalanced(network, positions);
+    for (residual, axes) in residuals.iter_mut().zip(network.fixed.iter()) {
+        *residual = std::array::from_fn(|axis| if axes[axis] { 0.0 } else { residual[axis] });
     }
     residuals
 }
 
-/// Force over length [N/m]; a spring of no length pulls nowhere.
-fn force_density(network: &Network<'_>, spring: usize, length: f64) -> f64 {
-    let (k, rest) = (network.stiffness[spring], network.rest_length[spring]);
-    if rest == 0.0 {
-        k
-    } else if length > 0.0 {
-        k * (1.0 - rest / length)
-    } else {
-        0.0
+/// Force that holds every node [N]; zero along axes that are free.
+pub fn reactions(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+    let mut reactions = unbalanced(network, positions);
+    for (reaction, axes) in reactions.iter_mut().zip(network.fixed.iter()) {
+        *reaction = std::array::from_fn(|axis| if axes[axis] { -reaction[axis] } else { 0.0 });
     }
+    reactions
+}
+
+/// Pull of springs and loads at every node [N].
+fn unbalanced(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+    let mut sums = network.loads.to_vec();
+    for (spring, &[a, b]) in network.springs.iter().enumerate() {
+        let (a, b) = (a as usize, b as usize);
+        let along = subtract(positions[b], positions[a]);
+        let pull = scale(along, force_density(network, spring, length(along)));
+        sums[a] = add(sums[a], pull);
+        sums[b] = subtract(sums[b], pull);
+    }
+    sums
+}
+
+/// Force over length [N/m]; a spring of no length pulls nowhere.
+pub(super) fn force_density(network: &Network<'_>, spring: usize, length: f64) -> f64 {
+    if network.rest_length[spring] == 0.0 && network.force[spring] == 0.0 {
+        return network.stiffness_at(spring, length);
+    }
+    if length > 0.0 { network.force_at(spring, length) / length } else { 0.0 }
 }
 
 fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> f64 {
@@ -127,7 +136,8 @@ pub(super) fn unheld_node(network: &Network<'_>) -> Option<u32> {
             next[from as usize] += 1;
         }
     }
-    let mut held = network.fixed.to_vec();
+    // A node that is held along one axis may still be loose along another; the tangent finds out.
+    let mut held: Vec<bool> = network.fixed.iter().map(|axes| axes.contains(&true)).collect();
     let mut open: Vec<u32> = (0..nodes as u32).filter(|&node| held[node as usize]).collect();
     while let Some(node) = open.pop() {
         for at in starts[node as usize]..starts[node as usize + 1] {
@@ -139,25 +149,4 @@ pub(super) fn unheld_node(network: &Network<'_>) -> Option<u32> {
         }
     }
     held.iter().position(|&held| !held).map(|node| node as u32)
-}
-
-/// Numbers of free nodes in a system of equations, and the way back.
-pub(super) struct FreeNodes {
-    /// Row of every node, or `FIXED`.
-    pub(super) rows: Vec<u32>,
-    /// Node of every row.
-    pub(super) nodes: Vec<u32>,
-}
-
-pub(super) const FIXED: u32 = u32::MAX;
-
-impl FreeNodes {
-    pub(super) fn new(fixed: &[bool]) -> Self {
-        let nodes: Vec<u32> = (0..fixed.len() as u32).filter(|&node| !fixed[node as usize]).collect();
-        let mut rows = vec![FIXED; fixed.len()];
-        for (row, &node) in nodes.iter().enumerate() {
-            rows[node as usize] = row as u32;
-        }
-        FreeNodes { rows, nodes }
-    }
 }

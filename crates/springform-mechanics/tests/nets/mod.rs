@@ -12,7 +12,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use springform_mechanics::assembly::{SpringLaw, assemble};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::network::Network;
+use springform_mechanics::network::{Network, Sense};
 use springform_mechanics::vector::{Vector, length, subtract};
 use springform_topology::expression::{Expression, express};
 
@@ -57,10 +57,12 @@ impl Net {
 
 /// A network of unit springs without loads.
 pub fn unit_network(positions: Vec<Vector>, springs: Vec<[u32; 2]>, fixed: &[usize]) -> Network<'static> {
-    let is_fixed = (0..positions.len()).map(|node| fixed.contains(&node)).collect::<Vec<_>>();
+    let is_fixed = (0..positions.len()).map(|node| [fixed.contains(&node); 3]).collect::<Vec<_>>();
     Network {
         stiffness: vec![1.0; springs.len()].into(),
         rest_length: vec![0.0; springs.len()].into(),
+        force: vec![0.0; springs.len()].into(),
+        sense: vec![Sense::Both; springs.len()].into(),
         loads: vec![[0.0; 3]; positions.len()].into(),
         fixed: is_fixed.into(),
         positions: positions.into(),
