@@ -35,7 +35,8 @@ from .exchange.obj import design_from_obj
 from .files import WriteError, explain
 from .network import TOLERANCE
 from .parameters import Parameters
-from .run import Run, is_run, open_run
+from .run import Run, open_run
+from .run_format import is_run
 
 INTERRUPTED = 130
 NOT_CONVERGED = 1

@@ -18,7 +18,8 @@ from . import _core
 from .design import Design, save
 from .errors import InputError
 from .parameters import Parameters, checked_parameters
-from .run import Run, RunWriter, Table, create, open_run, reopen, start_evolution
+from .run import Run, Table, open_run, start_evolution
+from .run_writer import RunWriter, create, reopen
 
 _FIRST_CHECKPOINT = 1.0
 """Seconds between checkpoints at first."""

@@ -1,0 +1,207 @@
+"""Writing run folders: under a lock, checkpoint by checkpoint."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import platform
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from . import _core
+from .design import Design, save
+from .errors import RunError
+from .files import WriteError, explain, remove_temporary, write_atomically
+from .network import TOLERANCE
+from .parameters import Parameters
+from .run import Run
+from .run_format import (
+    SCHEMA,
+    VERSION,
+    ChangeLine,
+    GenerationLine,
+    RunSettings,
+    file_hash,
+    is_run,
+    journal_text,
+    parts_of,
+    read_settings,
+)
+
+
+class RunWriter:
+    """Writes a run folder while a run goes on; made by `create` or `reopen`, under a lock."""
+
+    def __init__(self, folder: Path) -> None:
+        """Write into a run folder that exists and is locked."""
+        self._folder = folder
+        self._waiting: list[tuple[Mapping[str, NDArray[Any]], GenerationLine]] = []
+
+    def add(self, generation: int, result: Mapping[str, Any], parent: Mapping[str, Any]) -> None:
+        """Keep one generation until the next checkpoint."""
+        count = len(result["columns"]["springs"])
+        place = {
+            "generation": np.full(count, generation, dtype=np.uint32),
+            "individual": np.arange(count, dtype=np.uint32),
+        }
+        line = GenerationLine(
+            generation=generation,
+            parent=result["winner"],
+            springs=parent["springs"],
+            force_differential=parent["force_differential"],
+            suf=result["suf"],
+            strategy=result["strategy"],
+            edits=result["edits"],
+        )
+        self._waiting.append((place | result["columns"], line))
+
+    def checkpoint(self) -> None:
+        """Write what was added. Raises `WriteError`: nothing of it counts as written then."""
+        if not self._waiting:
+            return
+        columns, lines = zip(*self._waiting, strict=True)
+        first, last = lines[0].generation, lines[-1].generation
+
+        def column(name: str) -> pa.Array:
+            return pa.array(np.concatenate([rows[name] for rows in columns]), from_pandas=True)
+
+        table = pa.table([column(name) for name in SCHEMA.names], schema=SCHEMA)
+        sink = pa.BufferOutputStream()
+        pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
+        name = f"{first:07}-{last:07}.parquet"
+        write_atomically(self._folder / "measures" / name, sink.getvalue().to_pybytes())
+        self._append_text("journal.jsonl", journal_text(lines))
+        self._waiting = []
+
+    def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
+        """Journal a change of parameters that holds from a generation on."""
+        line = ChangeLine(generation=generation, parameters=dict(parameters))
+        self._append_text("journal.jsonl", journal_text([line]))
+
+    def log(self, message: str) -> None:
+        """Add a line to the log."""
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        self._append_text("log.txt", f"{now} {message}\n")
+
+    def _append_text(self, name: str, text: str) -> None:
+        path = self._folder / name
+        try:
+            with open(path, "ab") as file:
+                before = file.tell()
+                try:
+                    file.write(text.encode())
+                    file.flush()
+                    os.fsync(file.fileno())
+                except OSError:
+                    # Half a line would stand in the way of everything that follows.
+                    os.ftruncate(file.fileno(), before)
+                    raise
+        except OSError as error:
+            raise WriteError(f"can't be written: {explain(error)}", file=path) from None
+
+
+@contextmanager
+def create(
+    folder: str | os.PathLike[str],
+    design: Design,
+    parameters: Parameters,
+    start: tuple[int, float | None],
+) -> Iterator[RunWriter]:
+    """Make a run folder and hold its lock.
+
+    Raises `RunError`: the folder holds a run, or something else. `WriteError`: it can't be written.
+    """
+    path = Path(folder)
+    _refuse_run(path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        # Where a run began and died before it was one, there is a lock.
+        in_use = any(path.iterdir()) and not (path / "lock").exists()
+    except (OSError, ValueError) as error:
+        raise WriteError(f"can't be made: {explain(error)}", file=path) from None
+    if in_use:
+        raise RunError("is not empty; choose another folder", file=path)
+    with _locked(path):
+        _refuse_run(path)
+        remove_temporary(path)
+        if parts_of(path) or (path / "journal.jsonl").exists():
+            raise RunError("holds the rest of another run; choose another folder", file=path)
+        try:
+            (path / "measures").mkdir(exist_ok=True)
+        except OSError as error:
+            problem = f"can't be made: {explain(error)}"
+            raise WriteError(problem, file=path / "measures") from None
+        save(design, path / "design.toml")
+        settings = RunSettings(
+            springform_run=VERSION,
+            versions={
+                "springform": _core.__version__,
+                "python": platform.python_version(),
+                "numpy": np.__version__,
+                "machine": platform.machine(),
+            },
+            tolerance=TOLERANCE,
+            design=file_hash(path / "design.toml"),
+            start=start,
+            parameters=parameters.model_dump(mode="json"),
+        )
+        # Last, because a folder with this file counts as a run.
+        text = settings.model_dump_json(indent=2) + "\n"
+        write_atomically(path / "run.json", text.encode())
+        yield RunWriter(path)
+
+
+@contextmanager
+def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
+    """Hold the lock of a run folder, dropping what lies behind its last complete checkpoint.
+
+    Raises `RunError`: no run, a broken one, or one that another process drives. `WriteError`: it
+    can't be written.
+    """
+    read_settings(folder)
+    with _locked(folder):
+        # Read under the lock: until now another process may have gone on with it.
+        run = Run(folder)
+        _check(run)
+        write_atomically(folder / "journal.jsonl", journal_text(run.lines).encode())
+        remove_temporary(folder)
+        remove_temporary(folder / "measures")
+        for _, last, path in parts_of(folder):
+            if last > run.generations:
+                path.unlink(missing_ok=True)
+        yield run, RunWriter(folder)
+
+
+def _check(run: Run) -> None:
+    """Read all that is there, so that a damaged run is refused before work is put into it."""
+    _ = run.table, run.best
+
+
+def _refuse_run(folder: Path) -> None:
+    if is_run(folder):
+        raise RunError("already holds a run; resume it or choose another folder", file=folder)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    path = folder / "lock"
+    try:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise WriteError(f"can't be written: {explain(error)}", file=path) from None
+    try:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise RunError("another process drives this run; wait for it", file=folder) from None
+        yield
+    finally:
+        os.close(lock)
