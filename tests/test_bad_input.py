@@ -739,10 +739,20 @@ def interrupted(*words: str | Path, after: float) -> Result:
     return Result(process.returncode, out, err)
 
 
-def test_an_interrupted_search_writes_nothing(folder: Path) -> None:
+def test_an_interrupted_search_keeps_its_steps(folder: Path) -> None:
     words = ("seek", "three-cylinders-dense", "--steps", "100000", "--type", "2", "--out", "a.toml")
-    result = assert_untouched(folder, lambda: interrupted(*words, after=1.5))
-    assert result == Result(130, "", "springform: interrupted\n")
+    result = interrupted(*words, after=1.5)
+    assert (result.code, result.out) == (130, "")
+    assert_says(result.err, "interrupted", "a.toml")
+    before = len(sf.load("three-cylinders-dense").network().springs)
+    assert len(sf.load(folder / "a.toml").network().springs) > before
+
+
+def test_a_search_that_fails_keeps_its_steps(folder: Path) -> None:
+    result = in_process("seek", "one-cylinder", "--steps", "9", "--type", "0", "--out", "a.toml")
+    assert result.code == 0
+    assert "ended after" in result.err
+    assert sf.load(folder / "a.toml").solve().converged
 
 
 def test_two_interrupts_at_once_do_no_harm(folder: Path) -> None:

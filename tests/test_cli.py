@@ -25,6 +25,33 @@ STANDING_KEYS = ["springs", "force_differential", "suf"]
 SEEK_KEYS = ["steps", *STANDING_KEYS, "seconds"]
 PICTURES = ["net.png", "net.svg", "forces.png", "depth.png"]
 RUN_PICTURES = [*PICTURES, "fitness.png", "pareto.png"]
+PURSE = """
+springform = 1
+name = "purse"
+method = "dynamic"
+[framework]
+grid = "dia"
+[[framework.cylinders]]
+name = "a"
+around = 12
+along = 4
+[[framework.joins]]
+first = { ring = "a.end", start = 0, length = 6 }
+second = { ring = "a.end", start = 6, length = 6 }
+reversed = true
+[[framework.anchors]]
+ring = "a.start"
+index = 0
+position = [0.0, 0.0, 0.0]
+[[framework.anchors]]
+ring = "a.start"
+index = 6
+position = [2.0, 0.0, 0.0]
+[[framework.anchors]]
+ring = "a.end"
+index = 0
+position = [1.0, 0.0, 3.0]
+"""
 
 
 @pytest.fixture(autouse=True)
@@ -570,3 +597,19 @@ def test_scenes_are_found_before_files_and_files_by_path(folder: Path) -> None:
     assert sf.load("own.toml").name == "canopy"
     Path("sheet").write_text("not a design")
     assert sf.load("sheet").name == "sheet"
+
+
+def test_a_net_closed_on_itself_still_evolves(folder: Path) -> None:
+    """Some springs of a purse carry next to nothing, so the start has no force differential."""
+    design = folder / "purse.toml"
+    design.write_text(PURSE)
+    assert done("solve", design, "--json").report["force_differential"] is None
+    report = done("evolve", design, "--out", "run", *QUICK, "--json").report
+    assert report["best"]["force_differential"] is not None
+
+
+def test_a_run_that_stands_still_says_so(folder: Path) -> None:
+    words = ("--min-length", "5", "--population", "4", "--generations", "3", "--out", "run")
+    result = done("evolve", "one-cylinder", *words, "--json")
+    assert "the parent stayed in 3 of 3 generations" in result.err
+    assert result.report["lowest"] == result.report["start"]

@@ -209,20 +209,22 @@ def seek_command(
     began = time.perf_counter()
     start = _load(design, method)
     _check_writable(out)
-    step = None
+    step, ended = None, None
     with _progress("seeking") as progress:
-        task = progress.add_task("seeking", total=steps, springs="", differential="", pace="")
-        for step in seek(
-            start,
-            steps=steps,
-            type=type,
-            until_differential=until_differential,
-            until_suf=until_suf,
-        ):
-            _update(progress, task, step.step, step.springs, step.force_differential)
+        task = progress.add_task("seeking", total=steps, springs="–", differential="–")
+        limits = {"until_differential": until_differential, "until_suf": until_suf}
+        try:
+            for step in seek(start, steps=steps, type=type, **limits):
+                _update(progress, task, step.step, step.springs, step.force_differential)
+        except (SpringformError, KeyboardInterrupt) as error:
+            if step is None:
+                raise
+            ended = error
     if step is None:
         raise InputError("no cell of this design can be subdivided further", file=design)
     save(step.design, out)
+    if isinstance(ended, KeyboardInterrupt):
+        raise _InterruptedError(f"{out} holds the design after {step.step} steps")
     _print_report(
         {
             "steps": step.step,
@@ -233,6 +235,8 @@ def seek_command(
         },
         as_json,
     )
+    if ended is not None:
+        _say(f"ended after {step.step} steps: {ended}")
 
 
 @app.command(
@@ -473,6 +477,11 @@ def _with_progress(run: Callable[[OnGeneration], Run], total: int, done: int) ->
 
 
 def _report_run(finished: Run, began: float, as_json: bool) -> None:
+    if finished.stayed:
+        _say(
+            f"the parent stayed in {finished.stayed} of {finished.generations} generations: "
+            "no mutant was fit, or better with plus selection"
+        )
     _print_report(
         {
             "generations": finished.generations,
@@ -493,18 +502,11 @@ def _say(message: str) -> None:
 
 def _print_report(report: dict[str, Any], as_json: bool) -> None:
     if as_json:
-        print(json.dumps(_plain(report)))
+        print(json.dumps(results.finite(report)))
         return
     width = max(20, *map(len, report))
     for name, value in report.items():
         print(f"{name.replace('_', ' '):<{width}} {_words(value)}")
-
-
-def _plain(value: Any) -> Any:
-    """Numbers that JSON does not know become null."""
-    if isinstance(value, dict):
-        return {name: _plain(part) for name, part in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _words(value: Any) -> str:

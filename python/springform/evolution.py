@@ -98,6 +98,8 @@ def resume(
             parameters = checked_parameters(changed, run.design.file.method)
         if parameters != run.parameters:
             writer.change(run.generations, {"generations": generations})
+        # It is written anew at the end; until then it would be of an earlier generation.
+        (path / "best.toml").unlink(missing_ok=True)
         writer.log(f"resumed after generation {run.generations}")
         evolution = run.evolution(run.generations, threads=threads)
         _advance(evolution, parameters, writer, on_generation)
@@ -137,7 +139,7 @@ def seek(
     """
     checked_parameters({"until_differential": until_differential, "until_suf": until_suf})
     design.network()
-    kind = _refused(lambda: design.setting.cell_type(str(type)))
+    kind = _refused(lambda: design.setting.cell_type(str(type)), key="type")
     seeking = _refused(lambda: _core.StressSeeking(design.setting, design.closed.forest))
     now = design.closed
     for step in range(1, steps + 1):
@@ -153,12 +155,12 @@ def seek(
             return
 
 
-def _refused(make: Callable[[], Any]) -> Any:
+def _refused(make: Callable[[], Any], key: str | None = None) -> Any:
     try:
         return make()
     except _core.CoreError as error:
-        key, problem = error.args
-        raise InputError(problem, key=key) from None
+        core_key, problem = error.args
+        raise InputError(problem, key=key or core_key) from None
 
 
 def _finished(folder: str | os.PathLike[str]) -> Run:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from .design import Design, Measures
 from .design_file import dump
@@ -45,7 +47,7 @@ def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: 
         "design.toml": dump(design.to_file(), "toml"),
         "nodes.csv": _csv(["node", "key", "x", "y", "z", "anchor"], nodes),
         "springs.csv": _csv(spring_header, springs),
-        "measures.json": json.dumps(asdict(measures), indent=2) + "\n",
+        "measures.json": json.dumps(finite(asdict(measures)), indent=2) + "\n",
         "net.obj": line_obj(equilibrium.positions, network.springs),
     }
     try:
@@ -61,6 +63,15 @@ def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: 
     for name, text in contents.items():
         write_atomically(folder / name, text.encode())
     return [folder / name for name in contents]
+
+
+def finite(value: Any) -> Any:
+    """Return plain data with None for numbers that JSON does not know."""
+    if isinstance(value, dict):
+        return {name: finite(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

@@ -59,6 +59,11 @@ class Run:
         return [line.parent for line in self._chosen]
 
     @property
+    def stayed(self) -> int:
+        """Number of generations in which the parent stayed, because nobody was better or fit."""
+        return sum(parent is None for parent in self.parents)
+
+    @property
     def _chosen(self) -> list[GenerationLine]:
         return [line for line in self.lines if isinstance(line, GenerationLine)]
 
@@ -117,16 +122,19 @@ class Run:
 
     @property
     def lowest(self) -> tuple[int, int] | None:
-        """(generation, individual) of the lowest force differential; None if there is none."""
+        """(generation, individual) of the lowest force differential; None if there is none.
+
+        The start does not count, nor do individuals with springs below the minimum length.
+        """
         row = self._lowest_row()
         return None if row is None else (self._at("generation", row), self._at("individual", row))
 
     @property
-    def lowest_standing(self) -> dict[str, Any] | None:
-        """Springs, force differential and SUF of the individual of lowest force differential."""
+    def lowest_standing(self) -> dict[str, Any]:
+        """Springs, force differential and SUF of `lowest`; of the start if there is none."""
         row = self._lowest_row()
         if row is None:
-            return None
+            return self.start
         suf = float(self.table["suf"][row])
         return {
             "springs": self._at("springs", row),
@@ -198,10 +206,12 @@ class Run:
             raise RunError(error.message, file=path, key=f"parameters.{error.key}") from None
 
     def _lowest_row(self) -> int | None:
-        differential = self.table.get("force_differential")
-        if differential is None or np.isnan(differential).all():
+        if not self.table:
             return None
-        return int(np.nanargmin(differential))
+        differential = self.table["force_differential"].copy()
+        if self.parameters.min_length is not None:
+            differential[self.table["shortest_spring"] < self.parameters.min_length] = np.nan
+        return None if np.isnan(differential).all() else int(np.nanargmin(differential))
 
     def _at(self, column: str, row: int) -> int:
         return int(self.table[column][row])

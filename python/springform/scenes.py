@@ -36,6 +36,10 @@ def find(design: str | os.PathLike[str]) -> DesignFile:
     known = names()
     if name in known:
         return load_scene(name)
+    if os.path.isdir(name):
+        raise DesignError("is a folder; a run's design is its best.toml", file=name)
+    if name.lower().endswith(".obj"):
+        raise DesignError("is a mesh; make a design of it: springform init FILE.obj", file=name)
     if os.path.exists(name) or os.path.dirname(name):
         return load(name)
     raise DesignError(f"there is no such file or scene; {_hint(name, known)}", file=name)

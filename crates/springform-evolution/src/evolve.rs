@@ -224,8 +224,9 @@ impl Evolution {
         match forest.and_then(|forest| self.setting.evaluate(&forest)) {
             Ok(phenotype) => {
                 let measures = phenotype.measures;
-                let suf = criterion.suf(&measures, self.start, Standing::from(&self.parent.measures));
-                let score = criterion.score(&measures, suf);
+                let parent = Standing::from(&self.parent.measures);
+                let suf = criterion.suf(&measures, self.start, parent);
+                let score = criterion.score(&measures, self.start, parent);
                 let residual = Some(phenotype.equilibrium.residual);
                 Individual { edits, strategy, fingerprint, measures: Some(measures), residual, suf, score }
             }
@@ -261,8 +262,7 @@ impl Evolution {
             return criterion.choose(&standings);
         }
         let parent = &self.parent.measures;
-        let suf = criterion.suf(parent, self.start, Standing::from(parent));
-        standings.insert(0, (criterion.score(parent, suf), parent.springs));
+        standings.insert(0, (criterion.incumbent(parent, self.start), parent.springs));
         criterion.choose(&standings).and_then(|index| index.checked_sub(1))
     }
 }

@@ -70,26 +70,43 @@ pub struct Criterion {
 impl Criterion {
     /// Spring utilization factor of a net against the chosen reference.
     pub fn suf(&self, measures: &Measures, start: Standing, parent: Standing) -> Option<f64> {
-        let reference = match self.reference {
-            SufReference::Start => start,
-            SufReference::Parent => parent,
-            SufReference::Zero => Standing { springs: 0, differential: Some(0.0) },
-        };
+        let reference = self.reference(start, parent);
         spring_utilization(measures, (reference.differential, reference.springs))
     }
 
-    /// Score of a net whose spring utilization factor is `suf`.
-    pub fn score(&self, measures: &Measures, suf: Option<f64>) -> Score {
+    /// Score of a net in a run from `start`, as a mutant of `parent`.
+    ///
+    /// Where the reference has no force differential there is no factor to compare, and the differential counts.
+    pub fn score(&self, measures: &Measures, start: Standing, parent: Standing) -> Score {
         let too_short = self.min_length.is_some_and(|length| measures.shortest_spring < length);
         let (Some(differential), false) = (measures.force_differential, too_short) else {
             return Score::UNDEFINED;
         };
-        match (self.fitness, suf) {
+        let comparable = self.reference(start, parent).differential.is_some();
+        match (self.fitness, self.suf(measures, start, parent)) {
             (Fitness::Differential, _) => Score { rank: 0, value: differential },
+            (Fitness::Suf, None) if !comparable => Score { rank: 0, value: differential },
             (Fitness::Suf, None) => Score::UNDEFINED,
             // No gain in differential beats any gain; among these the lower differential is fitter.
             (Fitness::Suf, Some(suf)) if suf <= 0.0 => Score { rank: 0, value: differential },
             (Fitness::Suf, Some(suf)) => Score { rank: 1, value: suf },
+        }
+    }
+
+    /// Score of a parent that contends with its mutants: against itself nothing rose, so its differential counts.
+    pub fn incumbent(&self, measures: &Measures, start: Standing) -> Score {
+        let own = match self.reference {
+            SufReference::Parent => Criterion { fitness: Fitness::Differential, ..*self },
+            SufReference::Start | SufReference::Zero => *self,
+        };
+        own.score(measures, start, Standing::from(measures))
+    }
+
+    fn reference(&self, start: Standing, parent: Standing) -> Standing {
+        match self.reference {
+            SufReference::Start => start,
+            SufReference::Parent => parent,
+            SufReference::Zero => Standing { springs: 0, differential: Some(0.0) },
         }
     }
 

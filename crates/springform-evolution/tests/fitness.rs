@@ -19,7 +19,7 @@ const PARENT: Standing = Standing { springs: 140, differential: Some(14.0) };
 /// Score of a net with so many springs and this force differential.
 fn score(criterion: &Criterion, springs: u32, differential: Option<f64>) -> Score {
     let measures = standing(springs, differential, 0.5);
-    criterion.score(&measures, criterion.suf(&measures, START, PARENT))
+    criterion.score(&measures, START, PARENT)
 }
 
 /// What the rules of the design make of springs and differential against the start: class, then value.
@@ -136,9 +136,26 @@ fn springs_that_are_too_short_make_a_net_undefined() {
     let criterion = Criterion { min_length: Some(0.2), ..SUF };
     let defined = |shortest| {
         let measures = standing(120, Some(9.0), shortest);
-        criterion.score(&measures, criterion.suf(&measures, START, PARENT)).is_defined()
+        criterion.score(&measures, START, PARENT).is_defined()
     };
     assert_eq!([0.19, 0.2, 0.21].map(defined), [false, true, true]);
+}
+
+#[test]
+fn a_parent_against_itself_yields_to_lower_differentials_only() {
+    let criterion = Criterion { reference: SufReference::Parent, ..SUF };
+    let incumbent = criterion.incumbent(&standing(140, Some(14.0), 0.5), START);
+    assert!(score(&criterion, 150, Some(13.9)) < incumbent);
+    assert!(score(&criterion, 150, Some(14.1)) > incumbent);
+    assert!(incumbent.is_defined());
+}
+
+#[test]
+fn without_a_reference_the_differential_counts() {
+    let start = Standing { differential: None, ..START };
+    let against = |springs, differential| SUF.score(&standing(springs, differential, 0.5), start, PARENT);
+    assert!(against(90, Some(4.0)) < against(500, Some(5.0)));
+    assert!(!against(500, None).is_defined());
 }
 
 #[test]

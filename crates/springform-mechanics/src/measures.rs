@@ -2,7 +2,7 @@
 
 use crate::network::Network;
 use crate::vector::{Vector, cross, length, mean, scale, subtract};
-use springform_topology::base_mesh::BaseMesh;
+use springform_topology::base_mesh::{BaseMesh, Border};
 use springform_topology::cell_type::NULL;
 use springform_topology::expression::Expression;
 use springform_topology::framework::Side;
@@ -117,13 +117,16 @@ pub fn inner_forces(expression: &Expression, forces: &[f64]) -> Vec<f64> {
     (0..expression.cells.len() as u32).map(sum).collect()
 }
 
-/// Openings and sides of the parts, of those border nodes that the net has.
+/// Openings and sides of the parts: outlines through all nodes that the net has on a border, whether or not cords
+/// run along it. Normals follow the right-hand rule round a ring.
 pub fn apertures(mesh: &BaseMesh, expression: &Expression, positions: &[Vector]) -> Vec<Aperture> {
     mesh.borders()
         .iter()
         .map(|border| {
-            let nodes = border.path.iter().filter_map(|&vertex| expression.node(NodeKey::vertex(vertex)));
-            let outline: Vec<Vector> = nodes.map(|node| positions[node as usize]).collect();
+            let outline: Vec<Vector> = border_nodes(mesh, expression, border)
+                .into_iter()
+                .map(|node| positions[node as usize])
+                .collect();
             let stretches = if border.closed { outline.len() } else { outline.len().saturating_sub(1) };
             let stretch = |at: usize| (outline[at], outline[(at + 1) % outline.len()]);
             let perimeter = (0..stretches).map(|at| length(subtract(stretch(at).1, stretch(at).0))).sum();
@@ -133,6 +136,23 @@ pub fn apertures(mesh: &BaseMesh, expression: &Expression, positions: &[Vector])
             Aperture { part: border.part.clone(), side: border.side, perimeter, area, normal }
         })
         .collect()
+}
+
+/// Nodes of the net along a border, in its order.
+fn border_nodes(mesh: &BaseMesh, expression: &Expression, border: &Border) -> Vec<u32> {
+    let path = &border.path;
+    let mut nodes = Vec::new();
+    for (at, &vertex) in path.iter().enumerate() {
+        nodes.extend(expression.node(NodeKey::vertex(vertex)));
+        if at + 1 == path.len() && !border.closed {
+            break;
+        }
+        let next = path[(at + 1) % path.len()];
+        let Some(edge) = mesh.edge_between(vertex, next) else { continue };
+        let inside = expression.nodes_inside_edge(edge);
+        if vertex < next { nodes.extend(inside) } else { nodes.extend(inside.rev()) }
+    }
+    nodes
 }
 
 fn area(expression: &Expression, positions: &[Vector]) -> f64 {

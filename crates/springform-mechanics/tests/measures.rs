@@ -4,6 +4,7 @@ mod nets;
 
 use nets::common::cases;
 use nets::{Net, nets, point};
+use proptest::collection::vec;
 use proptest::prelude::*;
 use springform_mechanics::assembly::{SpringLaw, assemble, embed};
 use springform_mechanics::equilibrium::{Equilibrium, Settings, solve};
@@ -125,6 +126,29 @@ proptest! {
         if let (Some(small), Some(large)) = (small.force_differential, large.force_differential) {
             prop_assert!(small > 1e6 || near(large, small));
         }
+    }
+
+    /// Apertures run along the cords of the rings, whatever the levels of the cells there.
+    #[test]
+    fn apertures_follow_the_cords(around in 3u32..9, divided in vec((0u32..9, 0u8..4), 0..12)) {
+        let mesh = part(Shape::Cylinder, around, 1);
+        let mut forest = Forest::new(around, Content::QUAD);
+        for (face, child) in divided {
+            let mut cell = Place::top(face % around);
+            while forest.find(cell).is_some_and(|index| forest.children(index).is_some()) {
+                cell = cell.child(child);
+            }
+            Edit::Subdivide { cell, children: [Content::QUAD; 4] }.apply(&mut forest).expect("it fits");
+        }
+        let anchors = [0, 1, around, around + 1];
+        let positions = vec![[0.0, 0.0, 0.0], [2.0, 0.5, 0.0], [0.0, 0.0, 3.0], [0.5, 2.0, 3.0]];
+        let (expression, network, equilibrium) = hung(&mesh, &forest, &anchors, positions);
+        let lengths = network.lengths(&equilibrium.positions);
+        let rings = expression.springs.iter().zip(&lengths).filter(|(spring, _)| spring.ring);
+        let cords: f64 = rings.map(|(_, length)| length).sum();
+        let openings = apertures(&mesh, &expression, &equilibrium.positions);
+        let perimeters: f64 = openings.iter().map(|opening| opening.perimeter).sum();
+        prop_assert!((perimeters - cords).abs() <= 1e-9 * cords, "{perimeters} against {cords}");
     }
 
     /// The apertures of a cylinder between two regular polygons are those polygons.

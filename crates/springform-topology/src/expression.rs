@@ -129,6 +129,14 @@ impl Expression {
         self.nodes.binary_search(&key).ok().map(|node| node as u32)
     }
 
+    /// Nodes inside a base edge, from its lower vertex.
+    pub fn nodes_inside_edge(&self, edge: u32) -> std::ops::Range<u32> {
+        let [first, last] = NodeKey::inside_edge(edge);
+        let start = self.nodes.partition_point(|&node| node < first);
+        let end = self.nodes.partition_point(|&node| node <= last);
+        start as u32..end as u32
+    }
+
     /// Cells that have a node on their boundary, ascending.
     pub fn cells_at(&self, node: u32) -> Vec<u32> {
         (0..self.cells.len() as u32).filter(|&cell| self.cell_boundaries.of(cell).contains(&node)).collect()

@@ -57,6 +57,11 @@ impl NodeKey {
         NodeKey(u64::from(vertex))
     }
 
+    /// The keys between which those of all points inside a base edge lie, ascending from its lower vertex.
+    pub fn inside_edge(edge: u32) -> [NodeKey; 2] {
+        [NodeKey::edge(edge, 1), NodeKey::edge(edge, UNITS - 1)]
+    }
+
     fn edge(edge: u32, parameter: u32) -> NodeKey {
         NodeKey(1 << TAG_SHIFT | u64::from(edge) << COORDINATE_BITS | u64::from(parameter))
     }

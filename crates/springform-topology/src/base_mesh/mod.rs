@@ -188,6 +188,13 @@ impl BaseMesh {
         self.vertex_faces.of(vertex)
     }
 
+    /// The edge between two vertices.
+    pub fn edge_between(&self, a: u32, b: u32) -> Option<u32> {
+        let ends = [a.min(b), a.max(b)];
+        let sides = self.faces_at_vertex(a).iter().flat_map(|&face| self.face_sides[face as usize]);
+        sides.map(|side| side.edge).find(|&edge| self.edges[edge as usize] == ends)
+    }
+
     /// Only one face lies on the edge: a free ring, or the rim of a sheet or mesh.
     pub fn is_free_edge(&self, edge: u32) -> bool {
         self.edge_faces.of(edge).len() == 1
