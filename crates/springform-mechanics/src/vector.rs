@@ -38,3 +38,8 @@ pub fn mean(points: impl ExactSizeIterator<Item = Vector>) -> Vector {
     let count = points.len().max(1) as f64;
     scale(points.fold([0.0; 3], add), 1.0 / count)
 }
+
+/// Largest length of vectors; zero if there are none.
+pub fn largest(vectors: &[Vector]) -> f64 {
+    vectors.iter().map(|&vector| length(vector)).fold(0.0, f64::max)
+}

@@ -4,8 +4,8 @@
 //! converging variant of Bi-CG", 1992. Departures from the particle library that the paper used: anchors are
 //! taken out of the system instead of made heavy, and positions stay in double precision.
 
-use super::newton::{own_stiffness, spring_tangent};
 use super::state::{Equilibrium, Settings, Status, residuals, unheld_node};
+use super::tangent::{own_stiffness, spring_tangent};
 use crate::network::Network;
 use crate::vector::{Vector, add, dot, scale, subtract};
 

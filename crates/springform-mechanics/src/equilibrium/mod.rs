@@ -6,9 +6,11 @@
 
 pub mod cholesky;
 pub mod implicit_euler;
+mod interior;
 mod linear;
 mod newton;
 mod state;
+mod tangent;
 
 pub use state::{Equilibrium, Settings, Status, reactions, residuals};
 

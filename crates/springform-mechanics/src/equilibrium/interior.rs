@@ -1,0 +1,251 @@
+//! The interior-point phase for stiff and far-off nets: tensions as unknowns of their own.
+
+use super::tangent::{FreeAxes, along, block, spring_tangent};
+use crate::network::{Network, Sense};
+use crate::vector::{Vector, add, dot, largest, length, scale, subtract};
+
+/// Most interior-point steps.
+pub(super) const MOST_INTERIOR: u32 = 60;
+
+/// Tension times slack at which the interior-point method ends, as a share of loads times span.
+const LEAST_PRODUCT: f64 = 1e-9;
+
+/// Most that a node moves in the last interior-point step, as a share of the span.
+const SETTLED: f64 = 1e-2;
+
+/// Stiffness against moves of nodes in an interior-point step, as a share of loads over span.
+const HOLD: f64 = 1e-6;
+
+/// Part of a length or force that is left when a step would take all of it.
+const MARGIN: f64 = 0.05;
+
+/// Positions near an equilibrium, and steps, by a primal-dual interior-point method; `None` if it has no use.
+///
+/// Cords minimise ∑ t²/2k under length ≤ rest length + t/k, which is convex: tension and slack stay above zero, and
+/// their product falls from step to step (Wright, "Primal-dual interior-point methods", 1997). The direction of a
+/// constant force is an unknown of its own too (Andersen, Christiansen, Conn & Overton, "An efficient primal-dual
+/// interior-point method for minimizing a sum of Euclidean norms", 2000). Other springs are taken as they pull.
+pub(super) fn interior(
+    network: &Network<'_>,
+    free: &FreeAxes,
+    positions: &[Vector],
+    limit: u32,
+) -> Option<(Vec<Vector>, u32)> {
+    let mut positions = positions.to_vec();
+    let (span, force) = scales(network, &positions);
+    let mut parts: Vec<Part> = (0..network.springs.len())
+        .map(|spring| Part::new(network, spring, along(network, spring, &positions), span, force))
+        .collect();
+    let count = parts.iter().filter_map(Part::product).count() as f64;
+    if !(span > 0.0 && force > 0.0) || parts.iter().all(|part| matches!(part, Part::Law)) {
+        return None;
+    }
+    let (least, hold) = (LEAST_PRODUCT * force * span, HOLD * force / span);
+    let mut target = force * span;
+    let (mut share, mut moved): (f64, f64) = (1.0, 0.0);
+    for iteration in 0..limit {
+        let products = parts.iter().filter_map(Part::product);
+        let now = if count > 0.0 { products.sum::<f64>() / count } else { target };
+        if now <= 1.5 * least && share > 0.9 && moved <= SETTLED * span {
+            return Some((positions, iteration));
+        }
+        target = least.max(if share > 0.5 { 0.1 } else { 0.5 } * now);
+        let goal =
+            Goal { product: target, near: span * (target / (force * span)).sqrt(), tiny: 1e-12 * span };
+        let mut pull = network.loads.to_vec();
+        let mut blocks = Vec::with_capacity(parts.len());
+        for (spring, &[a, b]) in network.springs.iter().enumerate() {
+            let along = along(network, spring, &positions);
+            let (force, block) = parts[spring].linear(network, spring, along, &goal);
+            blocks.push(block);
+            let force = scale(along, force / length(along).max(goal.tiny));
+            pull[a as usize] = add(pull[a as usize], force);
+            pull[b as usize] = subtract(pull[b as usize], force);
+        }
+        let step = free.solve(network, &pull, |spring, _| (blocks[spring], hold))?;
+        let mut moves = vec![[0.0; 3]; positions.len()];
+        for (&(node, axis), [value]) in free.axes.iter().zip(step) {
+            moves[node as usize][axis] = value;
+        }
+        let steps: Vec<PartStep> = (0..parts.len())
+            .map(|spring| {
+                let (now, moved) = (along(network, spring, &positions), along(network, spring, &moves));
+                parts[spring].step(now, moved, &goal)
+            })
+            .collect();
+        share = parts.iter().zip(&steps).map(|(part, step)| part.share(step)).fold(1.0, f64::min);
+        moved = largest(&moves);
+        for (position, step) in positions.iter_mut().zip(&moves) {
+            *position = add(*position, scale(*step, share));
+        }
+        for (part, step) in parts.iter_mut().zip(&steps) {
+            part.advance(step, share);
+        }
+    }
+    Some((positions, limit))
+}
+
+/// Span [m] and force [N] that measure an interior-point step.
+fn scales(network: &Network<'_>, positions: &[Vector]) -> (f64, f64) {
+    let extent = |axis: usize| {
+        let along = || positions.iter().map(|position| position[axis]);
+        along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+    };
+    let span = (0..3).map(extent).fold(0.0, f64::max);
+    let loads: f64 = network.loads.iter().map(|&load| length(load)).sum();
+    let force = loads + network.force.iter().map(|force| force.abs()).fold(0.0, f64::max);
+    let stiffness = || network.stiffness.iter().sum::<f64>() / network.springs.len() as f64;
+    (span, if force > 0.0 { force } else { stiffness() * span })
+}
+
+/// What an interior-point step aims at.
+struct Goal {
+    /// Tension times slack of every cord [J].
+    product: f64,
+    /// Length below which a constant force fades [m].
+    near: f64,
+    /// Least length that has a direction [m].
+    tiny: f64,
+}
+
+/// A spring on the way of the interior-point method.
+enum Part {
+    Cord(Cord),
+    Pull(Pull),
+    /// As it pulls.
+    Law,
+}
+
+/// What a whole step adds to a part.
+enum PartStep {
+    Cord { tension: f64, slack: f64 },
+    Pull(Vector),
+    Law,
+}
+
+/// A spring that goes slack: length + slack = rest + tension / stiffness.
+struct Cord {
+    tension: f64,
+    slack: f64,
+    /// Length at which it starts to pull [m]; below zero under a constant force.
+    rest: f64,
+    stiffness: f64,
+}
+
+/// A constant force, and its direction times a force that is below it.
+struct Pull {
+    force: f64,
+    towards: Vector,
+}
+
+impl Part {
+    fn new(network: &Network<'_>, spring: usize, along: Vector, span: f64, force: f64) -> Part {
+        let (stiffness, constant) = (network.stiffness[spring], network.force[spring]);
+        let rest_length = network.rest_length[spring];
+        if stiffness == 0.0 && constant > 0.0 && network.sense[spring] != Sense::Compression {
+            return Part::Pull(Pull {
+                force: constant,
+                towards: scale(along, constant / length(along).hypot(span)),
+            });
+        }
+        if network.sense[spring] != Sense::Tension
+            || stiffness == 0.0
+            || (rest_length, constant) == (0.0, 0.0)
+        {
+            return Part::Law;
+        }
+        let tension = force.min(stiffness * length(along).max(1e-9 * span));
+        Part::Cord(Cord { tension, slack: span, rest: rest_length - constant / stiffness, stiffness })
+    }
+
+    fn product(&self) -> Option<f64> {
+        if let Part::Cord(cord) = self { Some(cord.tension * cord.slack) } else { None }
+    }
+
+    /// Tension if the ends stay, and stiffness.
+    fn linear(&self, network: &Network<'_>, spring: usize, along: Vector, goal: &Goal) -> (f64, [Vector; 3]) {
+        let size = length(along);
+        match self {
+            Part::Cord(cord) => {
+                let (tension, rate) = cord.linear(size, goal.product);
+                let size = size.max(goal.tiny);
+                (tension, block(along, size, rate, cord.tension / size))
+            }
+            Part::Pull(Pull { force, towards }) => {
+                let smooth = size.hypot(goal.near);
+                let turned = |i: usize, j: usize| towards[i] * along[j] + along[i] * towards[j];
+                let entry = |i: usize, j: usize| {
+                    force / smooth * f64::from(u8::from(i == j)) - 0.5 * turned(i, j) / (smooth * smooth)
+                };
+                (force * size / smooth, std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))
+            }
+            Part::Law => {
+                let force = network.force_at(spring, size);
+                (force, spring_tangent(network, spring, along, true))
+            }
+        }
+    }
+
+    /// What a part gains where its ends move apart by `moved`.
+    fn step(&self, along: Vector, moved: Vector, goal: &Goal) -> PartStep {
+        let size = length(along);
+        match self {
+            Part::Cord(cord) => {
+                let longer = dot(along, moved) / size.max(goal.tiny);
+                let (tension, rate) = cord.linear(size, goal.product);
+                let tension = tension + rate * longer - cord.tension;
+                let slack = tension / cord.stiffness - cord.excess(size) - longer;
+                PartStep::Cord { tension, slack }
+            }
+            Part::Pull(Pull { force, towards }) => {
+                let smooth = size.hypot(goal.near);
+                let turned = scale(*towards, dot(along, moved) / (smooth * smooth));
+                let reached = subtract(scale(add(along, moved), force / smooth), turned);
+                PartStep::Pull(subtract(reached, *towards))
+            }
+            Part::Law => PartStep::Law,
+        }
+    }
+
+    /// Share of a step after which tension and slack are still above zero.
+    fn share(&self, step: &PartStep) -> f64 {
+        let room = |value: f64, change: f64| {
+            if change < 0.0 { (MARGIN - 1.0) * value / change } else { 1.0 }
+        };
+        match (self, step) {
+            (Part::Cord(cord), PartStep::Cord { tension, slack }) => {
+                room(cord.tension, *tension).min(room(cord.slack, *slack))
+            }
+            _ => 1.0,
+        }
+    }
+
+    fn advance(&mut self, step: &PartStep, share: f64) {
+        match (self, step) {
+            (Part::Cord(cord), PartStep::Cord { tension, slack }) => {
+                cord.tension += share * tension;
+                cord.slack += share * slack;
+            }
+            (Part::Pull(pull), PartStep::Pull(change)) => {
+                let reached = add(pull.towards, scale(*change, share));
+                let most = (1.0 - MARGIN) * pull.force;
+                pull.towards = scale(reached, (most / length(reached)).min(1.0));
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Cord {
+    /// Length that is too much for tension and slack.
+    fn excess(&self, length: f64) -> f64 {
+        length - self.rest - self.tension / self.stiffness + self.slack
+    }
+
+    /// Tension if the ends stay, and its change with the length, for tension times slack to become `product`.
+    fn linear(&self, length: f64, product: f64) -> (f64, f64) {
+        let size = self.slack + self.tension / self.stiffness;
+        let change = product - self.slack * self.tension + self.tension * self.excess(length);
+        (self.tension + change / size, self.tension / size)
+    }
+}
