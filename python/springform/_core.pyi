@@ -98,10 +98,6 @@ class Forest:
     def fingerprint(self) -> int:
         """A number that equal forests share, below 2^64."""
 
-    @property
-    def stored(self) -> int:
-        """Number of cells, expressed or not."""
-
     def __eq__(self, other: object, /) -> bool: ...
 
 # --- mechanics ---------------------------------------------------------------------------------

@@ -5,7 +5,7 @@
 //!                          (inputs)  (results)
 //! ```
 //!
-//! Spring force F = k (L − r) [N]; by default k = 1 N/m and r = 0, so that force equals length and equilibrium is
+//! Spring force F = T + k (L − r) [N]; by default k = 1 N/m, r = 0 and T = 0, so that force equals length and equilibrium is
 //! one symmetric positive definite system: the force density system of Schek, "The force density method for form
 //! finding and computation of general networks", 1974, with q = k.
 

@@ -109,11 +109,6 @@ impl Forest {
         self.forest.fingerprint()
     }
 
-    #[getter]
-    fn stored(&self) -> usize {
-        self.forest.stored()
-    }
-
     fn __eq__(&self, other: &Forest) -> bool {
         self.forest == other.forest
     }

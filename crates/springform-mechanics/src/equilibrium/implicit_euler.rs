@@ -65,11 +65,6 @@ impl<'a> ImplicitEuler<'a> {
         &self.network
     }
 
-    /// Positions now [m].
-    pub fn positions(&self) -> &[Vector] {
-        &self.positions
-    }
-
     /// Makes one time step: (M + h C + h² K) Δv = h (f − C v − h K v), x ← x + h (v + Δv).
     pub fn advance(&mut self) {
         let step = self.motion.step;
