@@ -13,14 +13,16 @@ from .design import Aperture, Cells, Design, Measures, load, save
 from .errors import DesignError, InputError, RunError, SpringformError
 from .evolution import Progress, SeekStep, evolve, resume, seek
 from .files import WriteError
-from .network import Equilibrium, Network, animate, residuals, solve
+from .network import Equilibrium, Network, Rod, animate, residuals, solve
 from .parameters import Parameters
 from .run import Run, open_run
 from .scenes import names as scene_names
+from .spring_laws import Curve
 
 __all__ = [
     "Aperture",
     "Cells",
+    "Curve",
     "Design",
     "DesignError",
     "Equilibrium",
@@ -29,6 +31,7 @@ __all__ = [
     "Network",
     "Parameters",
     "Progress",
+    "Rod",
     "Run",
     "RunError",
     "SeekStep",

@@ -6,6 +6,7 @@ such as ``12.0.3``, nodes are keys such as ``e7:3/8``. Sizes: n nodes, m springs
 cells, v base vertices, e base edges, f base faces.
 """
 
+from collections.abc import Sequence
 from typing import Any, Literal, Protocol, TypeAlias, TypedDict, final
 
 import numpy as np
@@ -15,6 +16,7 @@ __all__ = [
     "BaseMesh",
     "CoreError",
     "Evolution",
+    "ForceStrainCurve",
     "Forest",
     "ImplicitEuler",
     "Net",
@@ -134,8 +136,49 @@ class _NetworkArrays(Protocol):
         """(m,): 1 tension, 0 both, -1 compression."""
 
     @property
+    def curve(self) -> _Numbers:
+        """(m,): number in `curves`; 2^32 - 1 where a spring has none; empty if none has one."""
+
+    @property
+    def curves(self) -> Sequence[ForceStrainCurve]:
+        """Measured curves."""
+
+    @property
     def loads(self) -> _Floats:
         """(n, 3) [N]."""
+
+    @property
+    def self_weight(self) -> _Floats:
+        """(m,) [N/m] of length at equilibrium; empty if no spring has any."""
+
+    @property
+    def pressure(self) -> Sequence[tuple[Sequence[int], float]]:
+        """Nodes around a cell, and the pressure on it [Pa]."""
+
+    @property
+    def rods(self) -> Sequence[_Rod]:
+        """Rods that bend."""
+
+    @property
+    def slides(self) -> Sequence[tuple[int, bool, _Vector]]:
+        """(node, whether in a plane, the line's direction or the plane's normal)."""
+
+class _Rod(Protocol):
+    @property
+    def nodes(self) -> Sequence[int]:
+        """Consecutive nodes."""
+
+    @property
+    def closed(self) -> bool:
+        """The last node is followed by the first."""
+
+    @property
+    def lengths(self) -> Sequence[float] | None:
+        """Unstressed lengths of the links [m]; not None."""
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI [N m2]."""
 
 class _Arrays(TypedDict):
     positions: _Floats
@@ -166,13 +209,18 @@ class _MeasuresAndApertures(_Measures):
     apertures: list[tuple[str, _Side, float, float, _Vector]]
     """(part, side, perimeter [m], area [m2], unit normal)."""
 
-class _Equilibrium(TypedDict):
+class SolveResult(TypedDict):
     positions: _Floats
     reactions: _Floats
+    loads: _Floats
     forces: _Floats
+    spring_energies: _Floats
+    bending_moments: list[_Floats]
     residual: float
+    worst_node: int | None
     converged: bool
     iterations: int
+    method: str
     reason: str
 
 @final
@@ -278,16 +326,30 @@ class Net:
         """Measure the net at positions, (n, 3) [m], with forces, (m,) [N]."""
 
 @final
+class ForceStrainCurve:
+    """A measured curve of force against strain."""
+
+    def __new__(cls, points: list[list[float]]) -> ForceStrainCurve:
+        """Take points (strain, force [N])."""
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Force over strain at the last point [N]."""
+
+    def force(self, strains: _Floats) -> _Floats:
+        """Return the force at strains, (s,) [N]."""
+
+@final
 class ImplicitEuler:
     """A bare network on its way to equilibrium."""
 
     def __new__(
         cls, network: _NetworkArrays, step: float, growth: float, drag: float
     ) -> ImplicitEuler: ...
-    def advance(self, tolerance: float) -> _Equilibrium:
+    def advance(self, tolerance: float) -> SolveResult:
         """Make one time step and return the state after it."""
 
-def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> _Equilibrium:
+def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> SolveResult:
     """Solve a bare network by "direct" or "implicit-euler"."""
 
 def residuals(network: _NetworkArrays) -> _Floats:

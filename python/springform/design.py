@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, design_file, scenes
+from .arrays import Floats
 from .design_schema import Arc, DesignFile, ForestSection, Overrides
 from .errors import DesignError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
-from .network import TOLERANCE, Equilibrium, Floats, Network, Solver, solve
+from .network import TOLERANCE, Equilibrium, Network, Solver, solve
 
 Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""

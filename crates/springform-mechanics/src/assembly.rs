@@ -45,6 +45,7 @@ pub fn assemble(expression: &Expression, embedding: &Embedding, law: SpringLaw) 
         loads: vec![[0.0; 3]; positions.len()].into(),
         positions: positions.into(),
         fixed: fixed.into(),
+        ..Network::default()
     }
 }
 

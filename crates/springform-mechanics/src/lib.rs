@@ -10,8 +10,11 @@
 //! finding and computation of general networks", 1974, with q = k.
 
 pub mod assembly;
+pub mod curve;
 pub mod embedding;
 pub mod equilibrium;
 pub mod measures;
 pub mod network;
+pub mod rod;
+pub mod sparse;
 pub mod vector;

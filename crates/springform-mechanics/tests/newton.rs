@@ -36,9 +36,15 @@ fn check_says_why(network: &Network<'_>, result: &Equilibrium) -> Result<(), Tes
     if result.status == Status::Converged {
         let mean = result.forces.iter().map(|force| force.abs()).sum::<f64>() / result.forces.len() as f64;
         let largest = residuals(network, &result.positions).into_iter().map(length).fold(0.0, f64::max);
-        // A net that carries next to nothing is measured by what its springs would carry.
-        let most =
-            network.stiffness.iter().zip(network.rest_length.iter()).map(|(k, r)| k * r).fold(0.0, f64::max);
+        // A net that carries next to nothing is measured by what its springs would carry over the span.
+        let held = || network.positions.iter().zip(network.fixed.iter()).filter(|(_, axes)| axes[0]);
+        let extent = |axis: usize| {
+            let along = || held().map(|(position, _)| position[axis]);
+            along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+        };
+        let span = (0..3).map(extent).fold(0.0, f64::max);
+        let springs = network.stiffness.iter().zip(network.rest_length.iter());
+        let most = springs.filter(|(_, r)| **r > 0.0).map(|(k, r)| k * r.max(span)).fold(0.0, f64::max);
         prop_assert!(largest <= 1e-9 * mean.max(1e-6 * most), "{largest:e} against {mean:e}");
     }
     Ok(())

@@ -20,6 +20,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<topology::Forest>()?;
     module.add_class::<setting::Setting>()?;
     module.add_class::<setting::Net>()?;
+    module.add_class::<network::ForceStrainCurve>()?;
     module.add_class::<network::ImplicitEuler>()?;
     module.add_class::<evolution::Evolution>()?;
     module.add_class::<evolution::StressSeeking>()?;

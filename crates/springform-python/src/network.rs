@@ -4,9 +4,12 @@ use crate::convert::{refusal, rows};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use springform_mechanics::curve::Curve;
 use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status, implicit_euler};
-use springform_mechanics::network::{Network, Sense};
+use springform_mechanics::network::{Network, Path, Pressure, Sense, Slide};
+use springform_mechanics::rod::Rod;
 use springform_mechanics::vector::Vector;
+use springform_topology::base_mesh::Groups;
 use std::borrow::Cow;
 
 /// An (n, 3) array as vectors, without a copy.
@@ -33,7 +36,56 @@ pub struct NetworkArrays<'py> {
     force: PyReadonlyArray1<'py, f64>,
     sense: PyReadonlyArray1<'py, i8>,
     loads: PyReadonlyArray2<'py, f64>,
+    /// Number of a spring's curve; NO_CURVE where it has none; empty if no spring has one.
+    curve: PyReadonlyArray1<'py, u32>,
+    curves: Vec<ForceStrainCurve>,
+    /// [N/m]; empty if no spring has any.
+    self_weight: PyReadonlyArray1<'py, f64>,
+    rods: Vec<RodArrays>,
+    /// Polygons of nodes, and the pressure on each [Pa].
+    pressure: Vec<(Vec<u32>, f64)>,
+    /// Node, whether it slides in a plane, and the line's direction or the plane's normal.
+    slides: Vec<(u32, bool, Vector)>,
 }
+
+/// A rod as Python holds it.
+#[derive(FromPyObject)]
+struct RodArrays {
+    nodes: Vec<u32>,
+    closed: bool,
+    lengths: Vec<f64>,
+    bending_stiffness: f64,
+}
+
+/// A measured force–strain curve.
+#[pyclass(frozen, from_py_object, module = "springform._core")]
+#[derive(Clone)]
+pub struct ForceStrainCurve {
+    pub curve: Curve,
+}
+
+#[pymethods]
+impl ForceStrainCurve {
+    #[new]
+    fn new(points: Vec<[f64; 2]>) -> PyResult<Self> {
+        let curve = Curve::new(&points).map_err(|error| refusal("points", error))?;
+        Ok(ForceStrainCurve { curve })
+    }
+
+    /// Force over strain at the last point, N.
+    #[getter]
+    fn axial_stiffness(&self) -> f64 {
+        self.curve.axial_stiffness()
+    }
+
+    /// Force at strains, N.
+    fn force<'py>(&self, py: Python<'py>, strains: PyReadonlyArray1<'py, f64>) -> PyResult<Floats<'py>> {
+        let force = |&strain: &f64| self.curve.axial_stiffness() * self.curve.value(strain);
+        Ok(PyArray1::from_iter(py, values("strains", &strains)?.iter().map(force)))
+    }
+}
+
+type Floats<'py> = Bound<'py, PyArray1<f64>>;
 
 impl NetworkArrays<'_> {
     /// The network that Rust reads in place.
@@ -56,10 +108,40 @@ impl NetworkArrays<'_> {
             force: Cow::Borrowed(values("force", &self.force)?),
             sense: values("sense", &self.sense)?.iter().map(|&sense| self::sense(sense)).collect(),
             fixed: Cow::Borrowed(self.fixed_axes.as_slice()?.as_chunks().0),
+            curve: Cow::Borrowed(values("curve", &self.curve)?),
+            curves: self.curves.iter().map(|one| one.curve.clone()).collect(),
+            weight: Cow::Borrowed(values("self_weight", &self.self_weight)?),
+            rods: self.rods.iter().map(RodArrays::rod).collect(),
+            pressure: self.pressure(),
+            slides: self.slides.iter().map(slide).collect(),
         };
         network.check().map_err(|error| refusal("network", error))?;
         Ok(network)
     }
+
+    fn pressure(&self) -> Pressure {
+        let cells = self.pressure.iter().enumerate();
+        let nodes = cells.flat_map(|(cell, (nodes, _))| nodes.iter().map(move |&node| (cell as u32, node)));
+        Pressure {
+            cells: Groups::collect(self.pressure.len(), nodes),
+            values: self.pressure.iter().map(|(_, value)| *value).collect(),
+        }
+    }
+}
+
+impl RodArrays {
+    fn rod(&self) -> Rod {
+        Rod {
+            nodes: self.nodes.clone(),
+            closed: self.closed,
+            lengths: self.lengths.clone(),
+            bending_stiffness: self.bending_stiffness,
+        }
+    }
+}
+
+fn slide(&(node, in_plane, along): &(u32, bool, Vector)) -> Slide {
+    Slide { node, path: if in_plane { Path::Plane(along) } else { Path::Line(along) } }
 }
 
 /// 1 pulls only, −1 pushes only, 0 does both.
@@ -110,20 +192,33 @@ fn equilibrium_dict<'py>(
     equilibrium: Equilibrium,
 ) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
+    let at_worst = equilibrium.worst.map_or_else(String::new, |node| format!("; node {node} is worst"));
     let reason = match equilibrium.status {
         Status::Converged => String::new(),
         Status::IterationLimit => {
             format!(
-                "stopped after {} iterations at a residual of {:.2e}",
+                "stopped after {} iterations at a residual of {:.2e}{at_worst}",
                 equilibrium.iterations, equilibrium.residual
             )
         }
         Status::Unheld { node } => {
             format!("node {node} is held by no springs that lead to a fixed node")
         }
-        Status::Singular => "the stiffness matrix is singular or numbers overflowed".to_owned(),
+        Status::Singular => format!("the stiffness matrix is singular or numbers overflowed{at_worst}"),
+        Status::Unstable => {
+            format!(
+                "the loads that follow the shape drive the net away, residual {:.2e}{at_worst}",
+                equilibrium.residual
+            )
+        }
     };
+    let energies: Vec<f64> = network.spring_energies(&equilibrium.positions);
     result.set_item("reactions", rows(py, equilibrium::reactions(network, &equilibrium.positions))?)?;
+    result.set_item("loads", rows(py, equilibrium::loads(network, &equilibrium.positions))?)?;
+    result.set_item("spring_energies", PyArray1::from_vec(py, energies))?;
+    result.set_item("bending_moments", moments(py, network, &equilibrium.positions))?;
+    result.set_item("method", equilibrium.method.name())?;
+    result.set_item("worst_node", equilibrium.worst)?;
     result.set_item("positions", rows(py, equilibrium.positions)?)?;
     result.set_item("forces", PyArray1::from_vec(py, equilibrium.forces))?;
     result.set_item("residual", equilibrium.residual)?;
@@ -131,6 +226,12 @@ fn equilibrium_dict<'py>(
     result.set_item("iterations", equilibrium.iterations)?;
     result.set_item("reason", reason)?;
     Ok(result)
+}
+
+/// Bending moment at every node of every rod, N m; zero at the ends of open rods.
+fn moments<'py>(py: Python<'py>, network: &Network<'_>, positions: &[Vector]) -> Vec<Floats<'py>> {
+    let rods = network.rods.iter();
+    rods.map(|rod| PyArray1::from_vec(py, rod.moments(positions))).collect()
 }
 
 /// A bare network on its way to equilibrium, step by step.
@@ -145,16 +246,7 @@ impl ImplicitEuler {
     #[new]
     fn new(network: NetworkArrays<'_>, step: f64, growth: f64, drag: f64) -> PyResult<Self> {
         let borrowed = network.network()?;
-        let owned = Network {
-            positions: Cow::Owned(borrowed.positions.into_owned()),
-            springs: Cow::Owned(borrowed.springs.into_owned()),
-            stiffness: Cow::Owned(borrowed.stiffness.into_owned()),
-            rest_length: Cow::Owned(borrowed.rest_length.into_owned()),
-            force: Cow::Owned(borrowed.force.into_owned()),
-            sense: Cow::Owned(borrowed.sense.into_owned()),
-            loads: Cow::Owned(borrowed.loads.into_owned()),
-            fixed: Cow::Owned(borrowed.fixed.into_owned()),
-        };
+        let owned = borrowed.into_owned();
         let motion = implicit_euler::Motion { step, growth, drag, ..implicit_euler::Motion::default() };
         Ok(ImplicitEuler { euler: implicit_euler::ImplicitEuler::new(owned, motion), steps: 0 })
     }

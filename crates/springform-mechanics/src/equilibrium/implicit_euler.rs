@@ -4,9 +4,12 @@
 //! converging variant of Bi-CG", 1992. Departures from the particle library that the paper used: anchors are
 //! taken out of the system instead of made heavy, and positions stay in double precision.
 
-use super::state::{Equilibrium, Settings, Status, residuals, unheld_node};
-use super::tangent::{own_stiffness, spring_tangent};
+use super::state::{Equilibrium, Method, Settings, Status, residuals, unheld_node};
+use super::supports::Supports;
+use super::tangent::{own_bend_stiffness, own_stiffness, spring_tangent};
 use crate::network::Network;
+use crate::rod::Bend;
+use crate::sparse::Block;
 use crate::vector::{Vector, add, dot, scale, subtract};
 
 /// How the net moves.
@@ -39,6 +42,8 @@ pub struct ImplicitEuler<'a> {
     velocities: Vec<Vector>,
     masses: Vec<f64>,
     motion: Motion,
+    supports: Supports,
+    bends: Vec<Bend>,
 }
 
 impl<'a> ImplicitEuler<'a> {
@@ -51,7 +56,13 @@ impl<'a> ImplicitEuler<'a> {
             masses[a as usize] += own;
             masses[b as usize] += own;
         }
+        let bends: Vec<Bend> = network.rods.iter().flat_map(|rod| rod.bends()).collect();
+        for bend in &bends {
+            bend.nodes.iter().for_each(|&node| masses[node as usize] += own_bend_stiffness(bend));
+        }
         ImplicitEuler {
+            supports: Supports::from(&network),
+            bends,
             positions: network.positions.to_vec(),
             velocities: vec![[0.0; 3]; network.positions.len()],
             network,
@@ -68,14 +79,14 @@ impl<'a> ImplicitEuler<'a> {
     /// Makes one time step: (M + h C + h² K) Δv = h (f − C v − h K v), x ← x + h (v + Δv).
     pub fn advance(&mut self) {
         let step = self.motion.step;
-        let system = System { euler: self, tangents: self.tangents(), step };
+        let system = System { euler: self, tangents: self.tangents(), bends: self.bend_tangents(), step };
         let force = residuals(&self.network, &self.positions);
         let stiff = system.stiffness_times(&self.velocities);
         let side: Vec<Vector> = (0..force.len())
             .map(|node| {
                 let drag = scale(self.velocities[node], self.motion.drag * self.masses[node]);
                 let pull = subtract(subtract(force[node], drag), scale(stiff[node], step));
-                free_part(&self.network, node, scale(pull, step), [0.0; 3])
+                self.supports.free_part(node, scale(pull, step))
             })
             .collect();
         let change = bicgstab(&system, &side);
@@ -89,16 +100,22 @@ impl<'a> ImplicitEuler<'a> {
     /// The state now as a result; converged where the residual is within the tolerance.
     pub fn state(&self, settings: &Settings, steps: u32) -> Equilibrium {
         let mut state = Equilibrium::at(&self.network, self.positions.clone(), Status::Converged, steps);
+        state.method = Method::ImplicitEuler;
         if state.status == Status::Converged && state.residual > settings.tolerance {
             state.status = Status::IterationLimit;
         }
         state
     }
 
-    fn tangents(&self) -> Vec<[Vector; 3]> {
+    fn tangents(&self) -> Vec<Block> {
         let along = |&[a, b]: &[u32; 2]| subtract(self.positions[b as usize], self.positions[a as usize]);
         let springs = self.network.springs.iter().enumerate();
         springs.map(|(spring, ends)| spring_tangent(&self.network, spring, along(ends), true)).collect()
+    }
+
+    fn bend_tangents(&self) -> Vec<[Block; 3]> {
+        let stiffness = |bend: &Bend| bend.bending(bend.links(&self.positions), true).stiffness;
+        self.bends.iter().map(stiffness).collect()
     }
 }
 
@@ -122,7 +139,9 @@ pub fn solve(network: &Network<'_>, settings: &Settings, motion: Motion) -> Equi
 /// The matrix of one time step, never assembled.
 struct System<'a> {
     euler: &'a ImplicitEuler<'a>,
-    tangents: Vec<[Vector; 3]>,
+    tangents: Vec<Block>,
+    /// Over the two links of every bend.
+    bends: Vec<[Block; 3]>,
     step: f64,
 }
 
@@ -137,6 +156,16 @@ impl System<'_> {
             product[a] = add(product[a], pull);
             product[b] = subtract(product[b], pull);
         }
+        for (bend, [uu, uv, vv]) in self.euler.bends.iter().zip(&self.bends) {
+            let [a, b, c] = bend.nodes.map(|node| node as usize);
+            let (first, second) = (subtract(x[b], x[a]), subtract(x[c], x[b]));
+            let on_first = add(uu.map(|row| dot(row, first)), uv.map(|row| dot(row, second)));
+            let turned: Vector = std::array::from_fn(|i| (0..3).map(|j| uv[j][i] * first[j]).sum());
+            let on_second = add(turned, vv.map(|row| dot(row, second)));
+            product[a] = subtract(product[a], on_first);
+            product[b] = add(product[b], subtract(on_first, on_second));
+            product[c] = add(product[c], on_second);
+        }
         product
     }
 
@@ -146,16 +175,13 @@ impl System<'_> {
         for (node, row) in product.iter_mut().enumerate() {
             let still = scale(x[node], inertia * self.euler.masses[node]);
             let moving = add(still, scale(*row, self.step * self.step));
-            *row = free_part(&self.euler.network, node, moving, x[node]);
+            *row = add(
+                self.euler.supports.free_part(node, moving),
+                self.euler.supports.held_part(node, x[node]),
+            );
         }
         product
     }
-}
-
-/// `free` along the axes on which a node is free, `held` along the others.
-fn free_part(network: &Network<'_>, node: usize, free: Vector, held: Vector) -> Vector {
-    let axes = network.fixed[node];
-    std::array::from_fn(|axis| if axes[axis] { held[axis] } else { free[axis] })
 }
 
 fn bicgstab(system: &System<'_>, side: &[Vector]) -> Vec<Vector> {

@@ -1,8 +1,10 @@
 //! The interior-point phase for stiff and far-off nets: tensions as unknowns of their own.
 
-use super::tangent::{FreeAxes, along, block, spring_tangent};
+use super::descent::Hill;
+use super::tangent::{Tangent, along, block, links, own_bend_stiffness, spring_tangent};
 use crate::network::{Network, Sense};
-use crate::vector::{Vector, add, dot, largest, length, scale, subtract};
+use crate::sparse::Lanes;
+use crate::vector::{Vector, add, dot, length, scale, subtract};
 
 /// Most interior-point steps.
 pub(super) const MOST_INTERIOR: u32 = 60;
@@ -26,13 +28,14 @@ const MARGIN: f64 = 0.05;
 /// constant force is an unknown of its own too (Andersen, Christiansen, Conn & Overton, "An efficient primal-dual
 /// interior-point method for minimizing a sum of Euclidean norms", 2000). Other springs are taken as they pull.
 pub(super) fn interior(
-    network: &Network<'_>,
-    free: &FreeAxes,
-    positions: &[Vector],
+    hill: Hill<'_>,
+    tangent: &mut Tangent,
+    positions: &[Lanes],
     limit: u32,
-) -> Option<(Vec<Vector>, u32)> {
+) -> Option<(Vec<Lanes>, u32)> {
+    let Hill { network, elements, supports, layout, .. } = hill;
     let mut positions = positions.to_vec();
-    let (span, force) = scales(network, &positions);
+    let (span, force) = scales(hill, &positions);
     let mut parts: Vec<Part> = (0..network.springs.len())
         .map(|spring| Part::new(network, spring, along(network, spring, &positions), span, force))
         .collect();
@@ -52,21 +55,34 @@ pub(super) fn interior(
         target = least.max(if share > 0.5 { 0.1 } else { 0.5 } * now);
         let goal =
             Goal { product: target, near: span * (target / (force * span)).sqrt(), tiny: 1e-12 * span };
-        let mut pull = network.loads.to_vec();
+        let mut moves = elements.loads().to_vec();
         let mut blocks = Vec::with_capacity(parts.len());
         for (spring, &[a, b]) in network.springs.iter().enumerate() {
             let along = along(network, spring, &positions);
             let (force, block) = parts[spring].linear(network, spring, along, &goal);
-            blocks.push(block);
-            let force = scale(along, force / length(along).max(goal.tiny));
-            pull[a as usize] = add(pull[a as usize], force);
-            pull[b as usize] = subtract(pull[b as usize], force);
+            blocks.push((block, hold));
+            let density = force / length(along).max(goal.tiny);
+            for axis in 0..3 {
+                moves[a as usize][axis] += density * along[axis];
+                moves[b as usize][axis] -= density * along[axis];
+            }
         }
-        let step = free.solve(network, &pull, |spring, _| (blocks[spring], hold))?;
-        let mut moves = vec![[0.0; 3]; positions.len()];
-        for (&(node, axis), [value]) in free.axes.iter().zip(step) {
-            moves[node as usize][axis] = value;
+        let bends = elements.bends.iter().map(|bend| {
+            let bending = bend.bending(links(bend, &positions), true);
+            (bending.stiffness, hold + 1e-9 * own_bend_stiffness(bend))
+        });
+        for bend in &elements.bends {
+            let [first, second] = bend.bending(links(bend, &positions), true).forces;
+            let [a, b, c] = bend.nodes.map(|node| node as usize);
+            for axis in 0..3 {
+                moves[a][axis] += first[axis];
+                moves[b][axis] += second[axis] - first[axis];
+                moves[c][axis] -= second[axis];
+            }
         }
+        supports.keep_free(&mut moves);
+        tangent.factor(layout, supports, blocks.iter().copied(), bends).ok()?;
+        tangent.solve(layout, supports, &mut moves);
         let steps: Vec<PartStep> = (0..parts.len())
             .map(|spring| {
                 let (now, moved) = (along(network, spring, &positions), along(network, spring, &moves));
@@ -74,9 +90,9 @@ pub(super) fn interior(
             })
             .collect();
         share = parts.iter().zip(&steps).map(|(part, step)| part.share(step)).fold(1.0, f64::min);
-        moved = largest(&moves);
+        moved = moves.iter().map(|&[x, y, z, _]| length([x, y, z])).fold(0.0, f64::max);
         for (position, step) in positions.iter_mut().zip(&moves) {
-            *position = add(*position, scale(*step, share));
+            (0..3).for_each(|axis| position[axis] += share * step[axis]);
         }
         for (part, step) in parts.iter_mut().zip(&steps) {
             part.advance(step, share);
@@ -86,13 +102,14 @@ pub(super) fn interior(
 }
 
 /// Span [m] and force [N] that measure an interior-point step.
-fn scales(network: &Network<'_>, positions: &[Vector]) -> (f64, f64) {
+fn scales(hill: Hill<'_>, positions: &[Lanes]) -> (f64, f64) {
+    let network = hill.network;
     let extent = |axis: usize| {
         let along = || positions.iter().map(|position| position[axis]);
         along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
     };
     let span = (0..3).map(extent).fold(0.0, f64::max);
-    let loads: f64 = network.loads.iter().map(|&load| length(load)).sum();
+    let loads: f64 = hill.elements.loads().iter().map(|&[x, y, z, _]| length([x, y, z])).sum();
     let force = loads + network.force.iter().map(|force| force.abs()).fold(0.0, f64::max);
     let stiffness = || network.stiffness.iter().sum::<f64>() / network.springs.len() as f64;
     (span, if force > 0.0 { force } else { stiffness() * span })

@@ -1,26 +1,28 @@
-//! Equilibrium: positions at which springs and loads balance at every free node.
+//! Equilibrium: positions at which springs, rods and loads balance at every free node.
 //!
-//! Where force is stiffness times length, one linear system is solved directly. Other nets are solved by Newton's
-//! method, damped so that the energy falls. [`implicit_euler`] moves a net to the same equilibrium step by step.
-//! A solve returns its status; it never prints and never panics on a bad net.
+//! ```text
+//! solver ─ linear      force is stiffness times length: one sparse factor
+//!        ├ descent     strong prestress: many cheap steps in the metric of one such factor
+//!        ├ newton      weak prestress, rods, last digits: the exact tangent
+//!        ├ interior    stiff and far-off nets: tensions as unknowns of their own
+//!        └ followers   around all of these: loads that follow the shape
+//! ```
+//!
+//! [`implicit_euler`] moves a net to the same equilibrium step by step. A solve returns its status; it never prints and
+//! never panics on a bad net.
 
-pub mod cholesky;
+mod descent;
+mod elements;
+mod followers;
 pub mod implicit_euler;
 mod interior;
 mod linear;
 mod newton;
+mod solver;
 mod state;
+mod supports;
 mod tangent;
 
-pub use state::{Equilibrium, Settings, Status, reactions, residuals};
-
-use crate::network::Network;
-use state::unheld_node;
-
-/// Solves a network that passes [`Network::check`].
-pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
-    if let Some(node) = unheld_node(network) {
-        return Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
-    }
-    if network.is_linear() { linear::solve(network, settings) } else { newton::solve(network, settings) }
-}
+pub use followers::press;
+pub use solver::{Solver, solve};
+pub use state::{Equilibrium, Method, Settings, Status, loads, reactions, residuals};

@@ -1,20 +1,17 @@
-//! Springs of any law: Newton's method on the potential energy, damped after Levenberg and Marquardt.
+//! Newton's method on the potential energy, damped after Levenberg and Marquardt.
 //!
 //! The undamped exact tangent is tried first. Where it is indefinite, or its step does not lower the energy, the
 //! transverse part of pushing springs is left out (Choi & Ko, "Stable but responsive cloth", 2002) and a share of each
 //! node's own stiffness is added to the diagonal (Marquardt, "An algorithm for least-squares estimation of nonlinear
 //! parameters", 1963), more and more until the energy falls.
-//!
-//! Stiff cords that have to swing far make the energy a narrow, curved valley, along which such steps are short. A net
-//! that has not converged soon is therefore moved by an interior-point method first, which takes tensions as unknowns
-//! of their own: a cord may be too long for its tension on the way, so no valley is followed. So a net needs no good
-//! start: springs may be slack, straight under transverse load, or far off.
 
-use super::interior::{MOST_INTERIOR, interior};
-use super::state::{Equilibrium, Settings, Status, residuals};
-use super::tangent::{FreeAxes, along, own_stiffness, spring_tangent};
+use super::descent::Hill;
+use super::elements::vector;
+use super::state::Settings;
+use super::tangent::{Tangent, along, links, own_bend_stiffness, own_stiffness, spring_tangent};
 use crate::network::Network;
-use crate::vector::{Vector, add, dot, largest, length, scale, subtract};
+use crate::sparse::Lanes;
+use crate::vector::{Vector, add, dot, length, scale, subtract};
 
 /// Damping after a refused undamped step, and the least that is kept, as a share of a node's own stiffness.
 const LEAST_DAMPING: f64 = 1e-9;
@@ -22,157 +19,178 @@ const LEAST_DAMPING: f64 = 1e-9;
 /// Damping beyond which a step is too short to matter.
 const MOST_DAMPING: f64 = 1e12;
 
-/// Part of a spring's length by which nodes that coincide are parted, so that it has a direction.
-const PARTING: f64 = 1e-6;
-
-/// Newton steps after which tensions become unknowns of their own.
-const PATIENCE: u32 = 60;
-
-pub(super) fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
-    let free = FreeAxes::new(network);
-    let first = Settings { iterations: settings.iterations.min(PATIENCE), ..*settings };
-    let result = newton(network, &free, &first, parted(network), 0);
-    let overflowed = !result.residual.is_finite();
-    if result.status == Status::Converged || overflowed || result.iterations >= settings.iterations {
-        return result;
-    }
-    let limit = MOST_INTERIOR.min(settings.iterations - result.iterations);
-    let Some((moved, steps)) = interior(network, &free, &result.positions, limit) else {
-        return newton(network, &free, settings, result.positions, result.iterations);
-    };
-    let iterations = result.iterations + steps;
-    let lower = Change::new(network, &result.positions, &moved).energy < 0.0;
-    newton(network, &free, settings, if lower { moved } else { result.positions }, iterations)
+/// Workspace of Newton's method.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Newton {
+    pub(super) tangent: Tangent,
+    pulls: Vec<Lanes>,
+    next_pulls: Vec<Lanes>,
+    next: Vec<Lanes>,
+    step: Vec<Lanes>,
 }
 
-/// Newton steps from positions that took some iterations.
-fn newton(
-    network: &Network<'_>,
-    free: &FreeAxes,
-    settings: &Settings,
-    mut positions: Vec<Vector>,
-    mut iterations: u32,
-) -> Equilibrium {
-    let mut damping = 0.0;
-    loop {
-        let result = Equilibrium::at(network, positions, Status::Converged, iterations);
-        if result.residual <= settings.tolerance || result.status != Status::Converged {
-            return result;
-        }
-        if iterations >= settings.iterations {
-            return Equilibrium { status: Status::IterationLimit, ..result };
-        }
-        let Some((moved, used)) = descend(network, free, &result, damping) else {
-            // A tangent that is positive definite leaves nothing but rounding in the way.
-            let forces = residuals(network, &result.positions);
-            let solid = newton_step(network, free, &result.positions, &forces, 0.0).is_some();
-            let status = if solid { Status::IterationLimit } else { Status::Singular };
-            return Equilibrium { status, ..result };
+/// How Newton's method ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Ended {
+    /// The residual is within the tolerance.
+    Converged,
+    /// The most steps were made.
+    Limit,
+    /// The energy falls no further and the tangent is positive definite: rounding.
+    Rounding,
+    /// The energy falls no further and the tangent holds no step.
+    Singular,
+    /// A number overflowed.
+    Overflow,
+}
+
+impl Newton {
+    /// Moves positions by Newton steps, for `limit` steps at most; how it ended and the steps made.
+    pub(super) fn solve(
+        &mut self,
+        hill: Hill<'_>,
+        positions: &mut Vec<Lanes>,
+        settings: &Settings,
+        limit: u32,
+    ) -> (Ended, u32) {
+        let mut damping = 0.0;
+        let mut pulls = std::mem::take(&mut self.pulls);
+        let (_, mut residual) = hill.look(positions, &mut pulls);
+        let mut iterations = 0;
+        let ended = loop {
+            if residual <= settings.tolerance {
+                break Ended::Converged;
+            }
+            if !residual.is_finite() {
+                break Ended::Overflow;
+            }
+            if iterations >= limit {
+                break Ended::Limit;
+            }
+            let Some((used, next_residual)) = self.descend(hill, positions, &pulls, residual, damping) else {
+                let solid = self.aim(hill, positions, &pulls, 0.0);
+                break if solid { Ended::Rounding } else { Ended::Singular };
+            };
+            std::mem::swap(positions, &mut self.next);
+            std::mem::swap(&mut pulls, &mut self.next_pulls);
+            residual = next_residual;
+            damping = if used > LEAST_DAMPING { 0.1 * used } else { 0.0 };
+            iterations += 1;
         };
-        positions = moved;
-        damping = if used > LEAST_DAMPING { 0.1 * used } else { 0.0 };
-        iterations += 1;
+        self.pulls = pulls;
+        (ended, iterations)
     }
-}
 
-/// The start, with the ends of springs of no length a little apart where their force needs a direction.
-fn parted(network: &Network<'_>) -> Vec<Vector> {
-    let mut positions = network.positions.to_vec();
-    for (spring, &[a, b]) in network.springs.iter().enumerate() {
-        let along = subtract(positions[b as usize], positions[a as usize]);
-        if length(along) > 0.0 || network.force_at(spring, 0.0) == 0.0 {
-            continue;
-        }
-        let node = if network.fixed[b as usize] == [true; 3] { a } else { b } as usize;
-        let size = PARTING * network.rest_length[spring].max(PARTING);
-        for axis in (0..3).filter(|&axis| !network.fixed[node][axis]) {
-            // Different along each axis and for each spring, so that no symmetry holds them together.
-            positions[node][axis] += size * (1.0 + 0.1 * ((spring + axis) % 7) as f64);
-        }
-    }
-    positions
-}
-
-/// A step that lowers the energy, and the damping that it took; `None` if there is none.
-fn descend(
-    network: &Network<'_>,
-    free: &FreeAxes,
-    now: &Equilibrium,
-    damping: f64,
-) -> Option<(Vec<Vector>, f64)> {
-    let out_of_balance = residuals(network, &now.positions);
-    let mut damping = damping;
-    while damping <= MOST_DAMPING {
-        if let Some(step) = newton_step(network, free, &now.positions, &out_of_balance, damping) {
-            let mut moved = now.positions.clone();
-            let mut slope = 0.0;
-            for (row, &(node, axis)) in free.axes.iter().enumerate() {
-                moved[node as usize][axis] += step[row][0];
-                slope += step[row][0] * out_of_balance[node as usize][axis];
+    /// A step that lowers the energy, in `next` and `next_pulls`: the damping that it took and the residual there.
+    fn descend(
+        &mut self,
+        hill: Hill<'_>,
+        positions: &[Lanes],
+        pulls: &[Lanes],
+        residual: f64,
+        damping: f64,
+    ) -> Option<(f64, f64)> {
+        let mut damping = damping;
+        while damping <= MOST_DAMPING {
+            if self.aim(hill, positions, pulls, damping) {
+                let fall: f64 = self.step.iter().zip(pulls).map(|(step, pull)| product(step, pull)).sum();
+                self.next.clear();
+                self.next
+                    .extend(positions.iter().zip(&self.step).map(|(position, step)| sum(position, step)));
+                let (_, next_residual) = hill.look(&self.next, &mut self.next_pulls);
+                let change = Change::new(hill, positions, &self.next);
+                let falls = change.energy <= -1e-4 * fall;
+                // Near equilibrium rounding hides the fall of energy, not that of the residual.
+                let level = change.energy <= change.noise && next_residual < residual;
+                if falls || level {
+                    return Some((damping, next_residual));
+                }
             }
-            let change = Change::new(network, &now.positions, &moved);
-            let falls = change.energy <= -1e-4 * slope;
-            // Near equilibrium rounding hides the fall of energy, not that of the residual.
-            let level = change.energy <= change.noise;
-            let calmer = || largest(&residuals(network, &moved)) < largest(&out_of_balance);
-            if falls || (level && calmer()) {
-                return Some((moved, damping));
-            }
+            damping = if damping == 0.0 { LEAST_DAMPING } else { 10.0 * damping };
         }
-        damping = if damping == 0.0 { LEAST_DAMPING } else { 10.0 * damping };
+        None
     }
-    None
+
+    /// Newton's step in `step`; false if the tangent holds none.
+    fn aim(&mut self, hill: Hill<'_>, positions: &[Lanes], pulls: &[Lanes], damping: f64) -> bool {
+        let Hill { network, elements, supports, layout, .. } = hill;
+        // The exact tangent without damping; with damping, one that is positive definite.
+        let clamped = damping > 0.0;
+        let springs = (0..network.springs.len()).map(|spring| {
+            let along = along(network, spring, positions);
+            let own = damping * own_stiffness(network, spring, length(along));
+            (spring_tangent(network, spring, along, clamped), own)
+        });
+        let bends = elements.bends.iter().map(|bend| {
+            let stiffness = bend.bending(links(bend, positions), clamped).stiffness;
+            (stiffness, damping * own_bend_stiffness(bend))
+        });
+        if self.tangent.factor(layout, supports, springs, bends).is_err() {
+            return false;
+        }
+        self.step.clear();
+        self.step.extend_from_slice(pulls);
+        self.tangent.solve(layout, supports, &mut self.step);
+        true
+    }
 }
 
-/// Change of the potential energy [J] of springs and dead loads between positions.
-struct Change {
-    energy: f64,
+/// Change of the potential energy [J] of springs, rods and dead loads between positions.
+pub(super) struct Change {
+    pub(super) energy: f64,
     /// Rounding of `energy`.
-    noise: f64,
+    pub(super) noise: f64,
 }
 
 impl Change {
     /// Sums the changes of all parts, which are far smaller than the parts themselves.
-    fn new(network: &Network<'_>, from: &[Vector], to: &[Vector]) -> Change {
+    pub(super) fn new(hill: Hill<'_>, from: &[Lanes], to: &[Lanes]) -> Change {
+        let network = hill.network;
         let mut change = Change { energy: 0.0, noise: 0.0 };
         let mut add_part = |part: f64, noise: f64| {
             change.energy += part;
             change.noise += 1e-14 * (part.abs() + noise);
         };
-        let moves: Vec<Vector> = from.iter().zip(to).map(|(&from, &to)| subtract(to, from)).collect();
-        for spring in 0..network.springs.len() {
-            let (before, moved) = (along(network, spring, from), along(network, spring, &moves));
-            let lengths = [length(before), length(along(network, spring, to))];
-            let total = lengths[0] + lengths[1];
-            let longer = if total > 0.0 { dot(moved, add(scale(before, 2.0), moved)) / total } else { 0.0 };
-            let [first, last] = lengths.map(|length| network.force_at(spring, length));
-            // While it pulls all the way, the force is linear.
-            let part = if first != 0.0 && last != 0.0 {
-                0.5 * (first + last) * longer
-            } else {
-                network.energy_at(spring, lengths[1]) - network.energy_at(spring, lengths[0])
-            };
-            add_part(part, network.stiffness[spring] * total * longer.abs());
+        for (spring, &[a, b]) in network.springs.iter().enumerate() {
+            let moved = |node: u32| subtract(vector(to[node as usize]), vector(from[node as usize]));
+            let moved = subtract(moved(b), moved(a));
+            let ends = [from, to].map(|positions| along(network, spring, positions));
+            let (part, noise) = spring_change(network, spring, ends, moved);
+            add_part(part, noise);
         }
-        for (&moved, &load) in moves.iter().zip(network.loads.iter()) {
-            add_part(-dot(load, moved), 0.0);
+        for bend in &hill.elements.bends {
+            let [before, after] =
+                [from, to].map(|positions| bend.bending(links(bend, positions), false).energy);
+            add_part(after - before, 1e-2 * before.max(after));
+        }
+        for (from, (to, load)) in from.iter().zip(to.iter().zip(hill.elements.loads())) {
+            add_part((0..3).map(|axis| load[axis] * (from[axis] - to[axis])).sum(), 0.0);
         }
         change
     }
 }
 
-fn newton_step(
-    network: &Network<'_>,
-    free: &FreeAxes,
-    positions: &[Vector],
-    out_of_balance: &[Vector],
-    damping: f64,
-) -> Option<Vec<[f64; 1]>> {
-    // The exact tangent without damping; with damping, one that is positive definite.
-    let clamped = damping > 0.0;
-    free.solve(network, out_of_balance, |spring, ends| {
-        let along = subtract(positions[ends[1]], positions[ends[0]]);
-        let own = damping * own_stiffness(network, spring, length(along));
-        (spring_tangent(network, spring, along, clamped), own)
-    })
+/// Change of a spring's energy, and the size of what its rounding comes from; `moved` holds digits that the difference
+/// of both directions has lost.
+fn spring_change(network: &Network<'_>, spring: usize, ends: [Vector; 2], moved: Vector) -> (f64, f64) {
+    let lengths = ends.map(length);
+    let total = lengths[0] + lengths[1];
+    let longer = if total > 0.0 { dot(moved, add(scale(ends[0], 2.0), moved)) / total } else { 0.0 };
+    let [first, last] = lengths.map(|length| network.force_at(spring, length));
+    // While it pulls all the way, the force is linear.
+    let linear = first != 0.0 && last != 0.0 && network.curve_of(spring).is_none();
+    let part = if linear {
+        0.5 * (first + last) * longer
+    } else {
+        network.energy_at(spring, lengths[1]) - network.energy_at(spring, lengths[0])
+    };
+    (part, network.stiffness[spring] * total * longer.abs())
+}
+
+fn product(a: &Lanes, b: &Lanes) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn sum(a: &Lanes, b: &Lanes) -> Lanes {
+    std::array::from_fn(|lane| a[lane] + b[lane])
 }

@@ -1,6 +1,9 @@
 //! What every solver starts from and ends with: settings, status, residuals, free nodes.
 
+use super::followers::loads_at;
+use super::supports::Supports;
 use crate::network::Network;
+use crate::sparse::Lanes;
 use crate::vector::{Vector, add, length, scale, subtract};
 
 /// When to stop.
@@ -32,6 +35,37 @@ pub enum Status {
     },
     /// The tangent is singular or a number overflowed.
     Singular,
+    /// Loads that follow the shape, or pushing springs, drive the net away.
+    Unstable,
+}
+
+/// How an equilibrium was found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Method {
+    /// One linear system.
+    #[default]
+    Linear,
+    /// Quasi-Newton steps in the metric of a scalar stiffness.
+    Preconditioned,
+    /// Newton steps on the exact tangent.
+    Newton,
+    /// Newton steps after an interior-point phase.
+    Interior,
+    /// Time steps.
+    ImplicitEuler,
+}
+
+impl Method {
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Linear => "linear",
+            Method::Preconditioned => "preconditioned",
+            Method::Newton => "newton",
+            Method::Interior => "interior",
+            Method::ImplicitEuler => "implicit-euler",
+        }
+    }
 }
 
 /// Result of a solve; n nodes, m springs.
@@ -43,52 +77,105 @@ pub struct Equilibrium {
     pub forces: Vec<f64>,
     /// Largest residual at a free node over the mean spring force.
     pub residual: f64,
+    /// Node of the largest residual, if any node is out of balance.
+    pub worst: Option<u32>,
     /// How the solve ended.
     pub status: Status,
     /// Iterations made.
     pub iterations: u32,
+    /// How it was found.
+    pub method: Method,
+}
+
+impl Default for Equilibrium {
+    fn default() -> Self {
+        Equilibrium {
+            positions: Vec::new(),
+            forces: Vec::new(),
+            residual: 0.0,
+            worst: None,
+            status: Status::Converged,
+            iterations: 0,
+            method: Method::Linear,
+        }
+    }
 }
 
 impl Equilibrium {
     /// The state of a network at positions; a number that is not finite makes it singular.
     pub(super) fn at(network: &Network<'_>, positions: Vec<Vector>, status: Status, iterations: u32) -> Self {
         let forces = network.forces(&positions);
-        let residual = relative_residual(network, &positions, &forces);
+        let (worst, residual) = relative_residual(network, &positions, &forces);
         let finite = residual.is_finite()
             && forces.iter().all(|force| force.is_finite())
             && positions.iter().flatten().all(|coordinate| coordinate.is_finite());
         let status = if finite { status } else { Status::Singular };
-        Equilibrium { positions, forces, residual, status, iterations }
+        Equilibrium { positions, forces, residual, worst, status, iterations, method: Method::Linear }
+    }
+
+    /// Sets the residual and the worst node from what is out of balance at nodes, and the mean force [N].
+    pub(super) fn measure(
+        &mut self,
+        network: &Network<'_>,
+        mean_force: f64,
+        unbalanced: impl Iterator<Item = (u32, Lanes)>,
+    ) {
+        let mut largest = 0.0;
+        self.worst = None;
+        for (node, [x, y, z, _]) in unbalanced {
+            let square = x * x + y * y + z * z;
+            // What is not a number is the worst.
+            if !(square <= largest) {
+                (largest, self.worst) = (square, Some(node));
+            }
+        }
+        let scale = mean_force.max(least_force_scale(network));
+        self.residual = if self.worst.is_none() { 0.0 } else { largest.sqrt() / scale };
     }
 }
 
-/// Force out of balance at every node [N]; zero along axes that hold it.
+/// Force out of balance at every node [N]; zero along the ways that supports hold.
 pub fn residuals(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+    let supports = Supports::from(network);
     let mut residuals = unbalanced(network, positions);
-    for (residual, axes) in residuals.iter_mut().zip(network.fixed.iter()) {
-        *residual = std::array::from_fn(|axis| if axes[axis] { 0.0 } else { residual[axis] });
+    for (node, residual) in residuals.iter_mut().enumerate() {
+        *residual = supports.free_part(node, *residual);
     }
     residuals
 }
 
-/// Force that holds every node [N]; zero along axes that are free.
+/// Force that holds every node [N]; zero along the ways that are free.
 pub fn reactions(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+    let supports = Supports::from(network);
     let mut reactions = unbalanced(network, positions);
-    for (reaction, axes) in reactions.iter_mut().zip(network.fixed.iter()) {
-        *reaction = std::array::from_fn(|axis| if axes[axis] { -reaction[axis] } else { 0.0 });
+    for (node, reaction) in reactions.iter_mut().enumerate() {
+        // Not −0 where nothing holds.
+        *reaction = subtract([0.0; 3], supports.held_part(node, *reaction));
     }
     reactions
 }
 
-/// Pull of springs and loads at every node [N].
+/// Loads on every node [N]: dead ones, and those that follow the shape.
+pub fn loads(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+    loads_at(network, positions)
+}
+
+/// Pull of springs, rods and loads at every node [N].
 fn unbalanced(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
-    let mut sums = network.loads.to_vec();
+    let mut sums = loads_at(network, positions);
     for (spring, &[a, b]) in network.springs.iter().enumerate() {
         let (a, b) = (a as usize, b as usize);
         let along = subtract(positions[b], positions[a]);
         let pull = scale(along, force_density(network, spring, length(along)));
         sums[a] = add(sums[a], pull);
         sums[b] = subtract(sums[b], pull);
+    }
+    for bend in network.rods.iter().flat_map(|rod| rod.bends()) {
+        let [a, b, c] = bend.nodes.map(|node| node as usize);
+        let [first, second] = bend.bending(bend.links(positions), false).forces;
+        sums[a] = add(sums[a], first);
+        sums[b] = add(sums[b], subtract(second, first));
+        sums[c] = subtract(sums[c], second);
     }
     sums
 }
@@ -101,20 +188,45 @@ pub(super) fn force_density(network: &Network<'_>, spring: usize, length: f64) -
     if length > 0.0 { network.force_at(spring, length) / length } else { 0.0 }
 }
 
-fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> f64 {
-    // `f64::max` would pass over what is not a number.
-    let larger = |a: f64, b: f64| if a >= b { a } else { b };
-    let largest = residuals(network, positions).into_iter().map(length).fold(0.0, larger);
-    if largest == 0.0 { 0.0 } else { largest / force_scale(network, forces) }
+fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> (Option<u32>, f64) {
+    let mut worst = (None, 0.0);
+    for (node, residual) in residuals(network, positions).into_iter().enumerate() {
+        let size = length(residual);
+        // What is not a number is the worst.
+        if size > worst.1 || size.is_nan() {
+            worst = (Some(node as u32), size);
+            if size.is_nan() {
+                break;
+            }
+        }
+    }
+    (worst.0, if worst.1 == 0.0 { 0.0 } else { worst.1 / force_scale(network, forces) })
 }
 
 /// Mean spring force [N], or what the loads give where no spring carries force.
 fn force_scale(network: &Network<'_>, forces: &[f64]) -> f64 {
     let mean = forces.iter().map(|force| force.abs()).sum::<f64>() / forces.len().max(1) as f64;
+    mean.max(least_force_scale(network))
+}
+
+/// The least force that residuals are measured by [N]: a share of the loads, and of what springs with a rest length
+/// would carry if they were stretched by the span; rounding of positions hides what is less.
+pub(super) fn least_force_scale(network: &Network<'_>) -> f64 {
     let loads = network.loads.iter().map(|&load| length(load)).fold(0.0, f64::max);
     let stiffness = network.stiffness.iter().zip(network.rest_length.iter());
-    let unstressed = stiffness.map(|(k, rest)| k * rest).fold(0.0, f64::max);
-    mean.max(1e-6 * loads).max(1e-6 * unstressed)
+    let springs = stiffness.filter(|&(_, &rest)| rest > 0.0);
+    let stretched = |span: f64| springs.map(|(k, rest)| k * rest.max(span)).fold(0.0, f64::max);
+    1e-6 * loads.max(stretched(span(network)))
+}
+
+/// Largest extent of the held nodes along an axis [m].
+fn span(network: &Network<'_>) -> f64 {
+    let extent = |axis: usize| {
+        let nodes = || network.positions.iter().zip(network.fixed.iter());
+        let along = || nodes().filter(|(_, axes)| axes[axis]).map(|(position, _)| position[axis]);
+        along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+    };
+    (0..3).map(extent).fold(0.0, f64::max)
 }
 
 /// A free node from which no springs lead to a fixed node.
@@ -138,6 +250,7 @@ pub(super) fn unheld_node(network: &Network<'_>) -> Option<u32> {
     }
     // A node that is held along one axis may still be loose along another; the tangent finds out.
     let mut held: Vec<bool> = network.fixed.iter().map(|axes| axes.contains(&true)).collect();
+    network.slides.iter().for_each(|slide| held[slide.node as usize] = true);
     let mut open: Vec<u32> = (0..nodes as u32).filter(|&node| held[node as usize]).collect();
     while let Some(node) = open.pop() {
         for at in starts[node as usize]..starts[node as usize + 1] {

@@ -1,82 +1,133 @@
-//! Tangent stiffness of springs of any law, over the axes along which nodes are free.
+//! Tangent stiffness of springs of any law and of rods, in blocks of three by three.
 
-use super::cholesky::{Factor, Symbolic, SymmetricMatrix};
+use super::elements::{Elements, vector};
 use super::state::force_density;
+use super::supports::Supports;
 use crate::network::Network;
-use crate::vector::{Vector, length, scale, subtract};
+use crate::rod::Bend;
+use crate::sparse::{Block, BlockFactor, Graph, Lanes, NotPositiveDefinite, Symbolic};
+use crate::vector::{Vector, add, dot, length, scale, subtract};
 
-/// Numbers of the axes along which nodes are free, and the way back.
-pub(super) struct FreeAxes {
-    /// Rows of the three axes of every node, or `FIXED`.
-    rows: Vec<[u32; 3]>,
-    /// Node and axis of every row.
-    pub(super) axes: Vec<(u32, usize)>,
-    /// Pattern of all tangents.
-    symbolic: Symbolic,
+/// The rows of a network, their links, and where the entries of its factors stand.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Layout {
+    pub(super) graph: Graph,
+    pub(super) symbolic: Symbolic,
+    /// Rows of every link: springs first, then three a bend.
+    pub(super) ends: Vec<[u32; 2]>,
 }
 
-const FIXED: u32 = u32::MAX;
-
-impl FreeAxes {
-    /// Numbers the free axes of a network and orders their elimination.
-    pub(super) fn new(network: &Network<'_>) -> Self {
-        let mut axes = Vec::new();
-        let mut number = |node: usize, axis: usize| {
-            if network.fixed[node][axis] {
-                return FIXED;
-            }
-            axes.push((node as u32, axis));
-            (axes.len() - 1) as u32
-        };
-        let rows = (0..network.positions.len()).map(|node| [0, 1, 2].map(|axis| number(node, axis)));
-        let rows: Vec<[u32; 3]> = rows.collect();
-        let symbolic = Symbolic::new(&tangent(network, &rows, axes.len(), |_, _| ([[0.0; 3]; 3], 0.0)));
-        FreeAxes { rows, axes, symbolic }
-    }
-
-    /// Moves of the free axes under forces, where each spring has a stiffness and a share of both nodes' diagonal;
-    /// `None` if they hold no step.
-    pub(super) fn solve(
-        &self,
-        network: &Network<'_>,
-        forces: &[Vector],
-        stiffness: impl Fn(usize, [usize; 2]) -> ([Vector; 3], f64),
-    ) -> Option<Vec<[f64; 1]>> {
-        let matrix = tangent(network, &self.rows, self.axes.len(), stiffness);
-        let factor = Factor::with_symbolic(&matrix, self.symbolic.clone()).ok()?;
-        let mut step: Vec<[f64; 1]> =
-            self.axes.iter().map(|&(node, axis)| [forces[node as usize][axis]]).collect();
-        factor.solve(&mut step);
-        Some(step)
+impl Layout {
+    /// Numbers rows and links and orders the elimination.
+    pub(super) fn build(&mut self, network: &Network<'_>, elements: &Elements, supports: &Supports) {
+        let rows = |pair: [u32; 2]| pair.map(|node| supports.rows[node as usize]);
+        let bends = elements.bends.iter().map(|bend| bend.nodes);
+        let pairs = bends.flat_map(|[a, b, c]| [[a, b], [b, c], [a, c]]);
+        let links = network.springs.iter().copied().chain(pairs).map(rows);
+        if supports.nodes.len() == self.graph.rows() && links.clone().eq(self.ends.iter().copied()) {
+            return;
+        }
+        self.ends.clear();
+        self.ends.extend(links);
+        self.graph.build(supports.nodes.len(), self.ends.iter().copied());
+        self.symbolic.build(&self.graph);
     }
 }
 
-/// Sum of the stiffness of springs.
-fn tangent(
-    network: &Network<'_>,
-    rows: &[[u32; 3]],
-    size: usize,
-    stiffness: impl Fn(usize, [usize; 2]) -> ([Vector; 3], f64),
-) -> SymmetricMatrix {
-    let mut diagonal = vec![0.0; size];
-    let mut entries = Vec::with_capacity(15 * network.springs.len());
-    for (spring, &ends) in network.springs.iter().enumerate() {
-        let (block, own) = stiffness(spring, ends.map(|node| node as usize));
-        let rows = ends.map(|node| rows[node as usize]);
-        for rows in rows {
-            for i in (0..3).filter(|&i| rows[i] != FIXED) {
-                diagonal[rows[i] as usize] += block[i][i] + own;
-                let below = (0..i).filter(|&j| rows[j] != FIXED);
-                entries.extend(below.map(|j| (rows[i], rows[j], block[i][j])));
+/// A tangent being assembled, and its factor.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Tangent {
+    diagonal: Vec<Block>,
+    links: Vec<Block>,
+    factor: BlockFactor,
+}
+
+/// What a spring adds: its stiffness, and how much of the identity both nodes get on top [N/m].
+pub(super) type SpringPart = (Block, f64);
+
+impl Tangent {
+    /// Factors the stiffness of springs and rods.
+    ///
+    /// # Errors
+    /// A stiffness that is not positive definite.
+    pub(super) fn factor(
+        &mut self,
+        layout: &Layout,
+        supports: &Supports,
+        springs: impl Iterator<Item = SpringPart>,
+        bends: impl Iterator<Item = ([Block; 3], f64)>,
+    ) -> Result<(), NotPositiveDefinite> {
+        self.diagonal.clear();
+        self.diagonal.resize(supports.nodes.len(), [[0.0; 3]; 3]);
+        self.links.clear();
+        for (&ends, (block, own)) in layout.ends.iter().zip(springs) {
+            for row in ends.into_iter().filter(|&row| row != Graph::OUTSIDE) {
+                accumulate(&mut self.diagonal[row as usize], &block, 1.0);
+                stiffen(&mut self.diagonal[row as usize], own);
             }
+            self.links.push(block.map(|row| row.map(|value| -value)));
         }
-        for (i, j) in (0..9).map(|at| (at / 3, at % 3)) {
-            if rows[0][i] != FIXED && rows[1][j] != FIXED {
-                entries.push((rows[0][i], rows[1][j], -block[i][j]));
+        for (links, (blocks, own)) in layout.ends[self.links.len()..].chunks_exact(3).zip(bends) {
+            self.add_bend([links[0][0], links[0][1], links[1][1]], &blocks, own);
+        }
+        self.hold(layout, supports);
+        self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.links, &layout.ends)
+    }
+
+    /// Moves of nodes under pulls, both one a node; moves of held nodes are zero.
+    pub(super) fn solve(&mut self, layout: &Layout, supports: &Supports, vectors: &mut [Lanes]) {
+        let mut side: Vec<Lanes> = supports.nodes.iter().map(|&node| vectors[node as usize]).collect();
+        self.factor.solve(&layout.symbolic, &mut side);
+        vectors.fill([0.0; 4]);
+        for (&node, value) in supports.nodes.iter().zip(side) {
+            vectors[node as usize] = value;
+        }
+        supports.keep_free(vectors);
+    }
+
+    /// Adds a bend over the rows of its three nodes; blocks are over its two links u = b − a and v = c − b.
+    fn add_bend(&mut self, rows: [u32; 3], [uu, uv, vv]: &[Block; 3], own: f64) {
+        let turned = |block: &Block| -> Block { std::array::from_fn(|i| [0, 1, 2].map(|j| block[j][i])) };
+        let vu = turned(uv);
+        let mut of_nodes = [[[0.0; 3]; 3]; 3];
+        accumulate(&mut of_nodes[0], uu, 1.0);
+        for (block, sign) in [(uu, 1.0), (uv, -1.0), (&vu, -1.0), (vv, 1.0)] {
+            accumulate(&mut of_nodes[1], block, sign);
+        }
+        accumulate(&mut of_nodes[2], vv, 1.0);
+        for (row, block) in rows.into_iter().zip(&of_nodes).filter(|(row, _)| *row != Graph::OUTSIDE) {
+            accumulate(&mut self.diagonal[row as usize], block, 1.0);
+            stiffen(&mut self.diagonal[row as usize], own);
+        }
+        let mut between = [[[0.0; 3]; 3]; 3];
+        accumulate(&mut between[0], uu, -1.0);
+        accumulate(&mut between[0], uv, 1.0);
+        accumulate(&mut between[1], uv, 1.0);
+        accumulate(&mut between[1], vv, -1.0);
+        accumulate(&mut between[2], uv, -1.0);
+        self.links.extend(between);
+    }
+
+    /// Takes the ways that supports hold out of the system.
+    fn hold(&mut self, layout: &Layout, supports: &Supports) {
+        for (node, projection) in &supports.partial {
+            let row = supports.rows[*node as usize];
+            let diagonal = &mut self.diagonal[row as usize];
+            let held = (diagonal[0][0] + diagonal[1][1] + diagonal[2][2]).abs().max(f64::MIN_POSITIVE);
+            let mut kept = product(projection, &product(diagonal, projection));
+            for (i, entries) in kept.iter_mut().enumerate() {
+                for (j, entry) in entries.iter_mut().enumerate() {
+                    *entry += held * (f64::from(u8::from(i == j)) - projection[i][j]);
+                }
+            }
+            *diagonal = kept;
+            for (_, link) in layout.graph.of(row) {
+                let block = &mut self.links[link as usize];
+                let first = layout.ends[link as usize][0] == row;
+                *block = if first { product(projection, block) } else { product(block, projection) };
             }
         }
     }
-    SymmetricMatrix::new(diagonal, &entries)
 }
 
 /// Stiffness that a spring has of its own, slack or not [N/m].
@@ -85,24 +136,34 @@ pub(super) fn own_stiffness(network: &Network<'_>, spring: usize, length: f64) -
     network.stiffness[spring].max(if length > 0.0 { constant / length } else { constant })
 }
 
-/// k n nᵀ + (F/L)(I − n nᵀ), the second term not below zero when `clamped`.
-pub(super) fn spring_tangent(
-    network: &Network<'_>,
-    spring: usize,
-    along: Vector,
-    clamped: bool,
-) -> [Vector; 3] {
-    let length = length(along);
-    let exact = force_density(network, spring, length);
+/// Stiffness against turning that a bend has of its own [N/m].
+pub(super) fn own_bend_stiffness(bend: &Bend) -> f64 {
+    let [a, b] = bend.lengths;
+    2.0 * bend.stiffness / (a * b * (a + b))
+}
+
+/// Stiffness of a spring along and across its direction [N/m].
+pub(super) fn moduli(network: &Network<'_>, spring: usize, length: f64) -> [f64; 2] {
     // A spring that starts at its rest length counts as taut: rounding would decide otherwise.
     let (k, rest) = (network.stiffness[spring], network.rest_length[spring]);
     let at_rest = (network.force[spring] + k * (length - rest)).abs() <= 1e-14 * k * rest;
-    let axial = if at_rest { k } else { network.stiffness_at(spring, length) };
-    block(along, length, axial, if clamped { exact.max(0.0) } else { exact })
+    let axial = if at_rest {
+        network.curve_of(spring).map_or(k, |curve| k * curve.slope(0.0))
+    } else {
+        network.stiffness_at(spring, length)
+    };
+    [axial, force_density(network, spring, length)]
+}
+
+/// k n nᵀ + (F/L)(I − n nᵀ), the second term not below zero when `clamped`.
+pub(super) fn spring_tangent(network: &Network<'_>, spring: usize, along: Vector, clamped: bool) -> Block {
+    let length = length(along);
+    let [axial, across] = moduli(network, spring, length);
+    block(along, length, axial, if clamped { across.max(0.0) } else { across })
 }
 
 /// Stiffness of a spring along and across its direction.
-pub(super) fn block(along: Vector, length: f64, axial: f64, transverse: f64) -> [Vector; 3] {
+pub(super) fn block(along: Vector, length: f64, axial: f64, transverse: f64) -> Block {
     let normal = if length > 0.0 { scale(along, 1.0 / length) } else { [0.0; 3] };
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -113,7 +174,28 @@ pub(super) fn block(along: Vector, length: f64, axial: f64, transverse: f64) -> 
 }
 
 /// From the first node of a spring to the second.
-pub(super) fn along(network: &Network<'_>, spring: usize, of: &[Vector]) -> Vector {
+pub(super) fn along(network: &Network<'_>, spring: usize, of: &[Lanes]) -> Vector {
     let [a, b] = network.springs[spring];
-    subtract(of[b as usize], of[a as usize])
+    subtract(vector(of[b as usize]), vector(of[a as usize]))
+}
+
+/// The two links of a bend.
+pub(super) fn links(bend: &Bend, of: &[Lanes]) -> [Vector; 2] {
+    let [a, b, c] = bend.nodes.map(|node| vector(of[node as usize]));
+    [subtract(b, a), subtract(c, b)]
+}
+
+fn accumulate(sum: &mut Block, block: &Block, factor: f64) {
+    for (sum, row) in sum.iter_mut().zip(block) {
+        *sum = add(*sum, scale(*row, factor));
+    }
+}
+
+fn stiffen(sum: &mut Block, own: f64) {
+    (0..3).for_each(|axis| sum[axis][axis] += own);
+}
+
+fn product(a: &Block, b: &Block) -> Block {
+    let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
+    std::array::from_fn(|i| [0, 1, 2].map(|j| dot(a[i], column(j))))
 }

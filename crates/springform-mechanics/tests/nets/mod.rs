@@ -67,6 +67,7 @@ pub fn unit_network(positions: Vec<Vector>, springs: Vec<[u32; 2]>, fixed: &[usi
         fixed: is_fixed.into(),
         positions: positions.into(),
         springs: springs.into(),
+        ..Network::default()
     }
 }
 

@@ -1,0 +1,208 @@
+//! The solver: a workspace that solves network after network, and the choice of method.
+
+use super::descent::{Descent, Hill};
+use super::elements::Elements;
+use super::followers::{Accelerated, follow};
+use super::interior::{MOST_INTERIOR, interior};
+use super::linear::Linear;
+use super::newton::{Change, Ended, Newton};
+use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
+use super::supports::Supports;
+use super::tangent::{Layout, along, moduli};
+use crate::network::Network;
+use crate::sparse::Lanes;
+use crate::vector::{Vector, length};
+
+/// Stiffness across springs over stiffness along them, above which steps in a scalar metric are tried first.
+const STRONG_PRESTRESS: f64 = 0.2;
+
+/// Most steps in a scalar metric.
+const MOST_DESCENT: u32 = 150;
+
+/// Newton steps after which tensions become unknowns of their own.
+const PATIENCE: u32 = 60;
+
+/// Most times that loads follow the shape.
+const MOST_FOLLOWED: u32 = 200;
+
+/// Part of a spring's length by which nodes that coincide are parted, so that it has a direction.
+const PARTING: f64 = 1e-6;
+
+/// Solves a network that passes [`Network::check`].
+pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
+    Solver::default().solve(network, settings)
+}
+
+/// Workspace of solves; networks solved one after the other share its memory, and the ordering if their pattern is the
+/// same. What it solved before changes no result.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Solver {
+    supports: Supports,
+    elements: Elements,
+    layout: Layout,
+    linear: Linear,
+    descent: Descent,
+    newton: Newton,
+    positions: Vec<Lanes>,
+}
+
+impl Solver {
+    /// Solves a network that passes [`Network::check`].
+    pub fn solve(&mut self, network: &Network<'_>, settings: &Settings) -> Equilibrium {
+        let mut result = Equilibrium::default();
+        self.solve_into(network, settings, &mut result);
+        result
+    }
+
+    /// Solves a network that passes [`Network::check`] into a result whose memory is used again.
+    pub fn solve_into(&mut self, network: &Network<'_>, settings: &Settings, result: &mut Equilibrium) {
+        if let Some(node) = unheld_node(network) {
+            *result = Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
+            return;
+        }
+        self.supports.build(network);
+        if network.is_linear() {
+            self.elements.bends.clear();
+            self.layout.build(network, &self.elements, &self.supports);
+            self.linear.solve(network, &self.supports, &self.layout, settings, result);
+            return;
+        }
+        *result = if network.has_followers() {
+            self.follow(network, settings)
+        } else {
+            let (positions, status, iterations, method) =
+                self.still(network, settings, &network.positions, &[], settings.iterations);
+            Equilibrium { method, ..Equilibrium::at(network, positions, status, iterations) }
+        };
+    }
+
+    /// Solves under loads that follow the shape: again and again under the loads that the last shape gives.
+    fn follow(&mut self, network: &Network<'_>, settings: &Settings) -> Equilibrium {
+        let inner = Settings { tolerance: 0.1 * settings.tolerance, ..*settings };
+        let mut accelerated = Accelerated::default();
+        let mut start = network.positions.to_vec();
+        let mut best: Option<Equilibrium> = None;
+        let mut iterations = 0;
+        for _ in 0..MOST_FOLLOWED {
+            let mut loads = vec![[0.0; 3]; start.len()];
+            follow(network, &start, &mut loads);
+            let left = settings.iterations.saturating_sub(iterations);
+            let (moved, status, used, method) = self.still(network, &inner, &start, &loads, left);
+            iterations += used;
+            let state =
+                Equilibrium { method, ..Equilibrium::at(network, moved, Status::Converged, iterations) };
+            if state.residual <= settings.tolerance {
+                return state;
+            }
+            if !state.residual.is_finite() {
+                return Equilibrium { status: Status::Unstable, ..state };
+            }
+            let moved = state.positions.clone();
+            if best.as_ref().is_none_or(|best| state.residual < best.residual) {
+                best = Some(Equilibrium { status: Status::Unstable, ..state });
+            }
+            // A step that stopped short of equilibrium still tells the way; one that can't move does not.
+            if left == 0 || status == Status::Singular {
+                break;
+            }
+            start = accelerated.next(start, moved);
+        }
+        best.map_or_else(
+            || Equilibrium::at(network, network.positions.to_vec(), Status::Unstable, iterations),
+            |best| Equilibrium { iterations, ..best },
+        )
+    }
+
+    /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method.
+    fn still(
+        &mut self,
+        network: &Network<'_>,
+        settings: &Settings,
+        start: &[Vector],
+        more: &[Vector],
+        limit: u32,
+    ) -> (Vec<Vector>, Status, u32, Method) {
+        self.elements.build(network, more);
+        self.layout.build(network, &self.elements, &self.supports);
+        let mut positions = std::mem::take(&mut self.positions);
+        parted(network, start, &mut positions);
+        let (status, iterations, method) = self.move_to_rest(network, settings, &mut positions, limit);
+        let moved = positions.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
+        self.positions = positions;
+        (moved, status, iterations, method)
+    }
+
+    /// The method that fits first, then the next where it does not get there.
+    fn move_to_rest(
+        &mut self,
+        network: &Network<'_>,
+        settings: &Settings,
+        positions: &mut Vec<Lanes>,
+        limit: u32,
+    ) -> (Status, u32, Method) {
+        let Solver { supports, elements, layout, descent, newton, .. } = self;
+        let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
+        let mut iterations = 0;
+        if is_strong(hill, positions) {
+            let descended = descent.descend(hill, positions, settings, limit.min(MOST_DESCENT));
+            iterations = descended.iterations;
+            if descended.converged {
+                return (Status::Converged, iterations, Method::Preconditioned);
+            }
+        }
+        let patience = PATIENCE.min(limit - iterations);
+        let (ended, steps) = newton.solve(hill, positions, settings, patience);
+        iterations += steps;
+        if ended == Ended::Converged || ended == Ended::Overflow || iterations >= limit {
+            return (status(ended), iterations, Method::Newton);
+        }
+        let patience = MOST_INTERIOR.min(limit - iterations);
+        let mut method = Method::Newton;
+        if let Some((moved, steps)) = interior(hill, &mut newton.tangent, positions, patience) {
+            iterations += steps;
+            if Change::new(hill, positions, &moved).energy < 0.0 {
+                *positions = moved;
+                method = Method::Interior;
+            }
+        }
+        let (ended, steps) = newton.solve(hill, positions, settings, limit - iterations);
+        (status(ended), iterations + steps, method)
+    }
+}
+
+fn status(ended: Ended) -> Status {
+    match ended {
+        Ended::Converged => Status::Converged,
+        Ended::Limit | Ended::Rounding => Status::IterationLimit,
+        Ended::Singular | Ended::Overflow => Status::Singular,
+    }
+}
+
+/// Springs hold their nodes across about as well as along, so that a scalar stiffness tells the net's.
+fn is_strong(hill: Hill<'_>, positions: &[Lanes]) -> bool {
+    let (mut stiff, mut held) = (0.0, 0.0);
+    for spring in 0..hill.network.springs.len() {
+        let size = length(along(hill.network, spring, positions));
+        let [axial, across] = moduli(hill.network, spring, size);
+        stiff += axial.max(across.max(0.0));
+        held += across.max(0.0);
+    }
+    hill.elements.bends.is_empty() && held > STRONG_PRESTRESS * stiff
+}
+
+/// The start, with the ends of springs of no length a little apart where their force needs a direction.
+fn parted(network: &Network<'_>, start: &[Vector], positions: &mut Vec<Lanes>) {
+    positions.clear();
+    positions.extend(start.iter().map(|&[x, y, z]| [x, y, z, 0.0]));
+    for (spring, &[a, b]) in network.springs.iter().enumerate() {
+        if length(along(network, spring, positions)) > 0.0 || network.force_at(spring, 0.0) == 0.0 {
+            continue;
+        }
+        let node = if network.fixed[b as usize] == [true; 3] { a } else { b } as usize;
+        let size = PARTING * network.rest_length[spring].max(PARTING);
+        for axis in (0..3).filter(|&axis| !network.fixed[node][axis]) {
+            // Different along each axis and for each spring, so that no symmetry holds them together.
+            positions[node][axis] += size * (1.0 + 0.1 * ((spring + axis) % 7) as f64);
+        }
+    }
+}
