@@ -59,7 +59,7 @@ test: calculix $(PACKAGE) # run the tests of the crates and of the Python packag
 # The finite element program that tests compare with; where it may, `make test` gets it by itself.
 .PHONY: calculix
 calculix:
-	@! command -v ccx > /dev/null || exit 0
+	@if command -v ccx > /dev/null; then exit; fi
 	as_root=
 	[ "$$(id -u)" = 0 ] || as_root="sudo --non-interactive"
 	if ! { command -v apt-get && $$as_root true; } &> /dev/null; then
