@@ -52,9 +52,23 @@ demo: $(PACKAGE) # evolve the three-cylinder net and draw it
 	echo "The run is in $(DEMO), its pictures are in $(DEMO)/pictures."
 
 .PHONY: test
-test: $(PACKAGE) # run the tests of the crates and of the Python package
+test: calculix $(PACKAGE) # run the tests of the crates and of the Python package
 	@cargo test --locked --quiet
 	pytest -n 2
+
+# The finite element program that tests compare with; where it may, `make test` gets it by itself.
+.PHONY: calculix
+calculix:
+	@if command -v ccx > /dev/null; then exit; fi
+	as_root=
+	[ "$$(id -u)" = 0 ] || as_root="sudo --non-interactive"
+	if ! { command -v apt-get && $$as_root true; } &> /dev/null; then
+		echo "the tests need CalculiX: install it (Debian: calculix-ccx) so that \`ccx\` is found, then try again" >&2
+		exit 1
+	fi
+	echo "installing CalculiX for the tests …"
+	$$as_root apt-get update -qq
+	$$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes --no-install-recommends calculix-ccx > /dev/null
 
 .PHONY: lint
 lint: $(PACKAGE) # check layout, lints, types, layers and generated files
