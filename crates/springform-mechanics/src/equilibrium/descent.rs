@@ -175,7 +175,7 @@ impl Descent {
         from: State,
     ) -> Option<(State, f64)> {
         let slope = -inner(pulls, &self.direction);
-        if !(slope < 0.0) {
+        if slope >= 0.0 || slope.is_nan() {
             return None;
         }
         let mut share = 1.0;

@@ -90,19 +90,17 @@ fn least_squares(changes: &[[Vec<Vector>; 2]], goal: &[Vector]) -> Vec<f64> {
         })
         .collect();
     let largest = (0..count).map(|at| rows[at][at]).fold(0.0, f64::max);
+    rows.iter_mut().enumerate().for_each(|(at, row)| row[at] += 1e-12 * largest);
     for at in 0..count {
-        rows[at][at] += 1e-12 * largest;
-    }
-    for at in 0..count {
-        if rows[at][at] <= 1e-14 * largest {
-            rows[at].fill(0.0);
+        let (done, rest) = rows.split_at_mut(at + 1);
+        let row = &mut done[at];
+        if row[at] <= 1e-14 * largest {
+            row.fill(0.0);
             continue;
         }
-        for below in at + 1..count {
-            let factor = rows[below][at] / rows[at][at];
-            for column in at..=count {
-                rows[below][column] -= factor * rows[at][column];
-            }
+        for below in rest {
+            let factor = below[at] / row[at];
+            below.iter_mut().zip(row.iter()).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     let mut shares = vec![0.0; count];

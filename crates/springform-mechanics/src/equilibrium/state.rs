@@ -125,7 +125,7 @@ impl Equilibrium {
         for (node, [x, y, z, _]) in unbalanced {
             let square = x * x + y * y + z * z;
             // What is not a number is the worst.
-            if !(square <= largest) {
+            if square > largest || square.is_nan() {
                 (largest, self.worst) = (square, Some(node));
             }
         }
