@@ -2,30 +2,31 @@
 //!
 //! Limited-memory BFGS (Nocedal, "Updating quasi-Newton matrices with limited storage", 1980) starting from the net's
 //! own Laplacian, as in Liu, Bouaziz & Kavan, "Quasi-Newton methods for real-time simulation of hyperelastic materials",
-//! 2017. Each spring's weight lies between its stiffness along and across its direction and is brought up to date a few
-//! times. Steps end by the approximate conditions of Hager & Zhang, "A new conjugate gradient method with guaranteed
+//! 2017. Each spring's weight lies between its stiffness along and across its direction at the start; bringing weights up to
+//! date on the way was tried and saves no time. Steps end by the approximate conditions of Hager & Zhang, "A new conjugate gradient method with guaranteed
 //! descent and an efficient line search", 2005, which slopes decide where rounding hides the energy.
 
 use super::elements::{Elements, State};
 use super::state::Settings;
 use super::supports::Supports;
-use super::tangent::{Layout, moduli, own_stiffness};
+use super::tangent::{Layout, along, moduli, own_stiffness};
 use crate::network::Network;
 use crate::sparse::{Graph, Lanes, ScalarFactor};
 use crate::vector::length;
+use pulp::{Arch, NullaryFnOnce};
 use std::collections::VecDeque;
 
 /// Pairs of step and change of pull that are remembered.
-const MEMORY: usize = 8;
+const MEMORY: usize = 5;
 
 /// Share of the stiffness across a spring in its weight; the rest is that along it.
 const ACROSS: f64 = 0.8;
 
+/// Stiffness of springs across their directions, as a share of that along them, that a descent needs.
+const STRONG_PRESTRESS: f64 = 0.2;
+
 /// Least weight of a spring as a share of its own stiffness.
 const LEAST_WEIGHT: f64 = 0.02;
-
-/// Steps after which weights are brought up to date.
-const UPDATES: [u32; 2] = [8, 16];
 
 /// Workspace of a descent.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -33,6 +34,8 @@ pub(super) struct Descent {
     diagonal: Vec<f64>,
     weights: Vec<f64>,
     factor: ScalarFactor,
+    /// Pattern that the factor is laid out for.
+    pattern: u64,
     pulls: Vec<Lanes>,
     next_pulls: Vec<Lanes>,
     next: Vec<Lanes>,
@@ -71,10 +74,9 @@ impl Hill<'_> {
     pub(super) fn look(&self, positions: &[Lanes], pulls: &mut Vec<Lanes>) -> (State, f64) {
         let state = self.elements.evaluate(self.network, positions, pulls);
         self.supports.keep_free(pulls);
-        let square = |[x, y, z, _]: &Lanes| x * x + y * y + z * z;
         let mut largest = 0.0;
-        for pull in pulls.iter() {
-            let square = square(pull);
+        for [x, y, z, _] in pulls.iter() {
+            let square = x * x + y * y + z * z;
             // `f64::max` would pass over what is not a number.
             largest = if square <= largest { largest } else { square };
         }
@@ -97,13 +99,14 @@ impl Descent {
         let (mut state, mut residual) = hill.look(positions, &mut pulls);
         let mut iterations = 0;
         self.spare.extend(self.pairs.drain(..));
-        let mut pace = Pace { start: residual };
+        let first = residual;
         while residual > settings.tolerance {
-            let fresh = iterations == 0 || UPDATES.contains(&iterations);
-            if iterations >= limit
-                || (fresh && !self.weigh(hill, positions))
-                || pace.hopeless(iterations, residual)
-            {
+            let lost = if iterations == 0 {
+                !self.weigh(hill, positions)
+            } else {
+                is_hopeless(iterations, residual / first)
+            };
+            if iterations >= limit || lost {
                 break;
             }
             self.aim(hill, &pulls);
@@ -118,15 +121,19 @@ impl Descent {
         Descended { converged: residual <= settings.tolerance, iterations }
     }
 
-    /// Factors the Laplacian of the springs' weights; false if it can't be.
+    /// Factors the Laplacian of the springs' weights; false if it can't be, or if springs hold their nodes across far less
+    /// than along, so that no scalar tells the net's stiffness.
     fn weigh(&mut self, hill: Hill<'_>, positions: &[Lanes]) -> bool {
         let Hill { network, supports, layout, .. } = hill;
         self.diagonal.clear();
         self.diagonal.resize(supports.nodes.len(), 0.0);
         self.weights.clear();
+        let (mut stiff, mut held) = (0.0, 0.0);
         for (spring, &ends) in layout.ends[..network.springs.len()].iter().enumerate() {
-            let size = length(super::tangent::along(network, spring, positions));
+            let size = length(along(network, spring, positions));
             let [axial, across] = moduli(network, spring, size);
+            stiff += axial.max(across);
+            held += across.max(0.0);
             let least = LEAST_WEIGHT * own_stiffness(network, spring, size);
             let weight = ((1.0 - ACROSS) * axial + ACROSS * across).max(least);
             self.weights.push(-weight);
@@ -134,36 +141,45 @@ impl Descent {
                 self.diagonal[row as usize] += weight;
             }
         }
+        if held <= STRONG_PRESTRESS * stiff {
+            return false;
+        }
         self.weights.resize(layout.ends.len(), 0.0);
         for (node, _) in &supports.partial {
             // Held in part: the metric holds it as a whole, about as well.
             self.diagonal[supports.rows[*node as usize] as usize] *= 1.5;
+        }
+        if self.pattern != layout.pattern {
+            self.factor.lay_out(&layout.graph, &layout.symbolic);
+            self.pattern = layout.pattern;
         }
         self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights).is_ok()
     }
 
     /// The direction of the next step: two loops over the pairs around the metric.
     fn aim(&mut self, hill: Hill<'_>, pulls: &[Lanes]) {
+        let supports = hill.supports;
+        let mut shares = [0.0; MEMORY];
         self.direction.clear();
         self.direction.extend_from_slice(pulls);
-        let mut shares = [0.0; MEMORY];
-        for (pair, share) in self.pairs.iter().zip(&mut shares).rev() {
-            *share = pair.inverse * inner(&pair.step, &self.direction);
-            add_scaled(&mut self.direction, -*share, &pair.change);
-        }
-        let Hill { supports, layout, .. } = hill;
+        Arch::new().dispatch(FirstLoop {
+            pairs: &self.pairs,
+            shares: &mut shares,
+            direction: &mut self.direction,
+        });
         self.rows.clear();
         self.rows.extend(supports.nodes.iter().map(|&node| self.direction[node as usize]));
-        self.factor.solve(&layout.symbolic, &mut self.rows);
+        self.factor.solve(&mut self.rows);
         self.direction.fill([0.0; 4]);
         for (&node, &row) in supports.nodes.iter().zip(&self.rows) {
             self.direction[node as usize] = row;
         }
         supports.keep_free(&mut self.direction);
-        for (pair, share) in self.pairs.iter().zip(shares) {
-            let other = pair.inverse * inner(&pair.change, &self.direction);
-            add_scaled(&mut self.direction, share - other, &pair.step);
-        }
+        Arch::new().dispatch(SecondLoop {
+            pairs: &self.pairs,
+            shares: &shares,
+            direction: &mut self.direction,
+        });
     }
 
     /// A step along the direction that is down enough, in `next` and `next_pulls`; `None` if there is none.
@@ -180,9 +196,7 @@ impl Descent {
         }
         let mut share = 1.0;
         for _ in 0..MOST_SHARES {
-            self.next.clear();
-            self.next.extend_from_slice(positions);
-            add_scaled(&mut self.next, share, &self.direction);
+            sum(&mut self.next, positions, share, &self.direction);
             let (state, residual) = hill.look(&self.next, &mut self.next_pulls);
             let next_slope = -inner(&self.next_pulls, &self.direction);
             let change = state.energy - from.energy;
@@ -202,8 +216,8 @@ impl Descent {
     fn remember(&mut self, positions: &[Lanes], pulls: &[Lanes]) {
         let oldest = if self.pairs.len() == MEMORY { self.pairs.pop_front() } else { self.spare.pop() };
         let mut pair = oldest.unwrap_or_default();
-        difference(&mut pair.step, &self.next, positions);
-        difference(&mut pair.change, pulls, &self.next_pulls);
+        sum(&mut pair.step, &self.next, -1.0, positions);
+        sum(&mut pair.change, pulls, -1.0, &self.next_pulls);
         let curvature = inner(&pair.step, &pair.change);
         if curvature > 1e-12 * (inner(&pair.step, &pair.step) * inner(&pair.change, &pair.change)).sqrt() {
             pair.inverse = 1.0 / curvature;
@@ -217,73 +231,109 @@ impl Descent {
 /// Most shares of a direction that are tried.
 const MOST_SHARES: u32 = 12;
 
-/// How fast the residual falls.
-struct Pace {
-    start: f64,
+/// After so many steps the residual should have fallen to a smaller share of the first.
+fn is_hopeless(iterations: u32, share: f64) -> bool {
+    iterations >= 24 && share > 0.85_f64.powi(iterations as i32)
 }
 
-impl Pace {
-    /// After this many steps the residual should have fallen by more.
-    fn hopeless(&mut self, iterations: u32, residual: f64) -> bool {
-        iterations >= 24 && residual > self.start * 0.85_f64.powi(iterations as i32)
-    }
+/// From the newest pair to the oldest.
+struct FirstLoop<'a> {
+    pairs: &'a VecDeque<Pair>,
+    shares: &'a mut [f64; MEMORY],
+    direction: &'a mut [Lanes],
 }
 
-#[inline(always)]
-fn inner(a: &[Lanes], b: &[Lanes]) -> f64 {
-    pulp::Arch::new().dispatch(Inner { a, b })
-}
-
-struct Inner<'a> {
-    a: &'a [Lanes],
-    b: &'a [Lanes],
-}
-
-impl pulp::NullaryFnOnce for Inner<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let mut sums = [[0.0; 4]; 4];
-        let (a, a_rest) = self.a.as_chunks::<4>();
-        let (b, b_rest) = self.b.as_chunks::<4>();
-        for (a, b) in a.iter().zip(b) {
-            for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-                *sum = std::array::from_fn(|lane| a[lane].mul_add(b[lane], sum[lane]));
-            }
-        }
-        for (a, b) in a_rest.iter().zip(b_rest) {
-            sums[0] = std::array::from_fn(|lane| a[lane].mul_add(b[lane], sums[0][lane]));
-        }
-        sums.iter().map(|sum| (sum[0] + sum[1]) + (sum[2] + sum[3])).sum()
-    }
-}
-
-/// a += s b.
-#[inline(always)]
-fn add_scaled(a: &mut [Lanes], s: f64, b: &[Lanes]) {
-    pulp::Arch::new().dispatch(AddScaled { a, s, b });
-}
-
-struct AddScaled<'a> {
-    a: &'a mut [Lanes],
-    s: f64,
-    b: &'a [Lanes],
-}
-
-impl pulp::NullaryFnOnce for AddScaled<'_> {
+impl NullaryFnOnce for FirstLoop<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        for (a, b) in self.a.iter_mut().zip(self.b) {
-            *a = std::array::from_fn(|lane| self.s.mul_add(b[lane], a[lane]));
+        for (pair, share) in self.pairs.iter().zip(self.shares).rev() {
+            *share = pair.inverse * flat_inner(pair.step.as_flattened(), self.direction.as_flattened());
+            add_scaled(self.direction.as_flattened_mut(), -*share, pair.change.as_flattened());
         }
     }
 }
 
-/// a − b.
-fn difference(out: &mut Vec<Lanes>, a: &[Lanes], b: &[Lanes]) {
-    out.clear();
-    out.extend(a.iter().zip(b).map(|(a, b)| -> Lanes { std::array::from_fn(|lane| a[lane] - b[lane]) }));
+/// From the oldest pair to the newest.
+struct SecondLoop<'a> {
+    pairs: &'a VecDeque<Pair>,
+    shares: &'a [f64; MEMORY],
+    direction: &'a mut [Lanes],
+}
+
+impl NullaryFnOnce for SecondLoop<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (pair, share) in self.pairs.iter().zip(self.shares) {
+            let other = pair.inverse * flat_inner(pair.change.as_flattened(), self.direction.as_flattened());
+            add_scaled(self.direction.as_flattened_mut(), share - other, pair.step.as_flattened());
+        }
+    }
+}
+
+fn inner(a: &[Lanes], b: &[Lanes]) -> f64 {
+    Arch::new().dispatch(Inner { a: a.as_flattened(), b: b.as_flattened() })
+}
+
+struct Inner<'a> {
+    a: &'a [f64],
+    b: &'a [f64],
+}
+
+impl NullaryFnOnce for Inner<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        flat_inner(self.a, self.b)
+    }
+}
+
+#[inline(always)]
+fn flat_inner(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 16];
+    let (a, a_rest) = a.as_chunks::<16>();
+    let (b, b_rest) = b.as_chunks::<16>();
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..16 {
+            sums[lane] = a[lane].mul_add(b[lane], sums[lane]);
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+/// a += s b.
+#[inline(always)]
+fn add_scaled(a: &mut [f64], s: f64, b: &[f64]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = s.mul_add(*b, *a);
+    }
+}
+
+/// out = a + s b.
+fn sum(out: &mut Vec<Lanes>, a: &[Lanes], s: f64, b: &[Lanes]) {
+    out.resize(a.len(), [0.0; 4]);
+    Arch::new().dispatch(Sum { out: out.as_flattened_mut(), a: a.as_flattened(), s, b: b.as_flattened() });
+}
+
+struct Sum<'a> {
+    out: &'a mut [f64],
+    a: &'a [f64],
+    s: f64,
+    b: &'a [f64],
+}
+
+impl NullaryFnOnce for Sum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (out, (a, b)) in self.out.iter_mut().zip(self.a.iter().zip(self.b)) {
+            *out = self.s.mul_add(*b, *a);
+        }
+    }
 }

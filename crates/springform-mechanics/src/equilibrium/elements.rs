@@ -166,38 +166,49 @@ impl NullaryFnOnce for Evaluate<'_> {
 
     #[inline(always)]
     fn call(self) -> Sums {
+        let Evaluate { packs, positions, pulls } = self;
         let (mut energy, mut force_sum, mut work) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        for pack in self.packs {
-            let ends = pack.ends.map(|[a, b]| [self.positions[a as usize], self.positions[b as usize]]);
-            let along = ends.map(|[a, b]| [b[0] - a[0], b[1] - a[1], b[2] - a[2], 0.0]);
-            let mut square = [0.0; WIDTH];
-            for lane in 0..WIDTH {
-                let [x, y, z, _] = along[lane];
-                square[lane] = x.mul_add(x, y.mul_add(y, z * z));
+        for pack in packs {
+            let mut along = [[0.0; 4]; WIDTH];
+            for (along, [a, b]) in along.iter_mut().zip(pack.ends) {
+                *along = minus(&positions[b as usize], &positions[a as usize]);
             }
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| [along[0][axis], along[1][axis], along[2][axis], along[3][axis]]);
             let mut density = [0.0; WIDTH];
             for lane in 0..WIDTH {
-                let size = square[lane].sqrt();
+                let square = x[lane].mul_add(x[lane], y[lane].mul_add(y[lane], z[lane] * z[lane]));
+                let size = square.sqrt();
                 let elastic = pack.stiffness[lane].mul_add(size - pack.rest[lane], pack.constant[lane]);
                 // A number that is lost stays lost: `max` and `min` would hide it.
                 let force = if elastic < pack.least[lane] { pack.least[lane] } else { elastic };
                 let force = if force > pack.most[lane] { pack.most[lane] } else { force };
                 // A spring of no length pulls nowhere, with whatever force.
                 density[lane] = force / if size > 0.0 { size } else { 1.0 };
-                energy[lane] += force * (0.5 * force).mul_add(pack.compliance[lane], pack.pull[lane] * size);
+                let mean = (0.5 * force).mul_add(pack.compliance[lane], pack.pull[lane] * size);
+                energy[lane] = force.mul_add(mean, energy[lane]);
                 force_sum[lane] += force.abs();
-                work[lane] += force.abs() * size;
+                work[lane] = force.abs().mul_add(size, work[lane]);
             }
-            for lane in 0..WIDTH {
-                let [a, b] = pack.ends[lane];
-                let pull = along[lane].map(|value| value * density[lane]);
-                let first = &mut self.pulls[a as usize];
-                (0..4).for_each(|axis| first[axis] += pull[axis]);
-                let second = &mut self.pulls[b as usize];
-                (0..4).for_each(|axis| second[axis] -= pull[axis]);
+            for (([a, b], along), density) in pack.ends.into_iter().zip(&along).zip(density) {
+                add_times(&mut pulls[a as usize], along, density);
+                add_times(&mut pulls[b as usize], along, -density);
             }
         }
         Sums { energy: total(energy), force: total(force_sum), work: total(work) }
+    }
+}
+
+#[inline(always)]
+fn minus(a: &Lanes, b: &Lanes) -> Lanes {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
+}
+
+/// a += s b.
+#[inline(always)]
+fn add_times(a: &mut Lanes, b: &Lanes, s: f64) {
+    for lane in 0..4 {
+        a[lane] = s.mul_add(b[lane], a[lane]);
     }
 }
 

@@ -82,7 +82,7 @@ pub(super) fn interior(
         }
         supports.keep_free(&mut moves);
         tangent.factor(layout, supports, blocks.iter().copied(), bends).ok()?;
-        tangent.solve(layout, supports, &mut moves);
+        tangent.solve(supports, &mut moves);
         let steps: Vec<PartStep> = (0..parts.len())
             .map(|spring| {
                 let (now, moved) = (along(network, spring, &positions), along(network, spring, &moves));

@@ -13,6 +13,8 @@ pub(super) struct Linear {
     diagonal: Vec<f64>,
     weights: Vec<f64>,
     factor: ScalarFactor,
+    /// Pattern that the factor is laid out for.
+    pattern: u64,
     sides: Vec<Lanes>,
     positions: Vec<Lanes>,
     pulls: Vec<Lanes>,
@@ -36,6 +38,10 @@ impl Linear {
         result: &mut Equilibrium,
     ) {
         self.assemble(network, supports, layout);
+        if self.pattern != layout.pattern {
+            self.factor.lay_out(&layout.graph, &layout.symbolic);
+            self.pattern = layout.pattern;
+        }
         result.method = Method::Linear;
         result.iterations = 0;
         if self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights).is_err() {
@@ -43,7 +49,7 @@ impl Linear {
             return;
         }
         loop {
-            self.factor.solve(&layout.symbolic, &mut self.sides);
+            self.factor.solve(&mut self.sides);
             for (&node, step) in supports.nodes.iter().zip(&self.sides) {
                 let position = &mut self.positions[node as usize];
                 (0..3).for_each(|axis| position[axis] += step[axis]);

@@ -130,7 +130,7 @@ impl Newton {
         }
         self.step.clear();
         self.step.extend_from_slice(pulls);
-        self.tangent.solve(layout, supports, &mut self.step);
+        self.tangent.solve(supports, &mut self.step);
         true
     }
 }

@@ -8,13 +8,10 @@ use super::linear::Linear;
 use super::newton::{Change, Ended, Newton};
 use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
 use super::supports::Supports;
-use super::tangent::{Layout, along, moduli};
+use super::tangent::{Layout, along};
 use crate::network::Network;
 use crate::sparse::Lanes;
 use crate::vector::{Vector, length};
-
-/// Stiffness across springs over stiffness along them, above which steps in a scalar metric are tried first.
-const STRONG_PRESTRESS: f64 = 0.2;
 
 /// Most steps in a scalar metric.
 const MOST_DESCENT: u32 = 150;
@@ -143,7 +140,7 @@ impl Solver {
         let Solver { supports, elements, layout, descent, newton, .. } = self;
         let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
         let mut iterations = 0;
-        if is_strong(hill, positions) {
+        if elements.bends.is_empty() {
             let descended = descent.descend(hill, positions, settings, limit.min(MOST_DESCENT));
             iterations = descended.iterations;
             if descended.converged {
@@ -176,18 +173,6 @@ fn status(ended: Ended) -> Status {
         Ended::Limit | Ended::Rounding => Status::IterationLimit,
         Ended::Singular | Ended::Overflow => Status::Singular,
     }
-}
-
-/// Springs hold their nodes across about as well as along, so that a scalar stiffness tells the net's.
-fn is_strong(hill: Hill<'_>, positions: &[Lanes]) -> bool {
-    let (mut stiff, mut held) = (0.0, 0.0);
-    for spring in 0..hill.network.springs.len() {
-        let size = length(along(hill.network, spring, positions));
-        let [axial, across] = moduli(hill.network, spring, size);
-        stiff += axial.max(across.max(0.0));
-        held += across.max(0.0);
-    }
-    hill.elements.bends.is_empty() && held > STRONG_PRESTRESS * stiff
 }
 
 /// The start, with the ends of springs of no length a little apart where their force needs a direction.

@@ -1,9 +1,8 @@
 //! Tangent stiffness of springs of any law and of rods, in blocks of three by three.
 
 use super::elements::{Elements, vector};
-use super::state::force_density;
 use super::supports::Supports;
-use crate::network::Network;
+use crate::network::{Network, Sense};
 use crate::rod::Bend;
 use crate::sparse::{Block, BlockFactor, Graph, Lanes, NotPositiveDefinite, Symbolic};
 use crate::vector::{Vector, add, dot, length, scale, subtract};
@@ -15,6 +14,8 @@ pub(super) struct Layout {
     pub(super) symbolic: Symbolic,
     /// Rows of every link: springs first, then three a bend.
     pub(super) ends: Vec<[u32; 2]>,
+    /// Another number for each pattern, from 1.
+    pub(super) pattern: u64,
 }
 
 impl Layout {
@@ -24,9 +25,11 @@ impl Layout {
         let bends = elements.bends.iter().map(|bend| bend.nodes);
         let pairs = bends.flat_map(|[a, b, c]| [[a, b], [b, c], [a, c]]);
         let links = network.springs.iter().copied().chain(pairs).map(rows);
-        if supports.nodes.len() == self.graph.rows() && links.clone().eq(self.ends.iter().copied()) {
+        let known = self.pattern > 0 && supports.nodes.len() == self.graph.rows();
+        if known && links.clone().eq(self.ends.iter().copied()) {
             return;
         }
+        self.pattern += 1;
         self.ends.clear();
         self.ends.extend(links);
         self.graph.build(supports.nodes.len(), self.ends.iter().copied());
@@ -40,6 +43,8 @@ pub(super) struct Tangent {
     diagonal: Vec<Block>,
     links: Vec<Block>,
     factor: BlockFactor,
+    /// Pattern that the factor is laid out for.
+    pattern: u64,
 }
 
 /// What a spring adds: its stiffness, and how much of the identity both nodes get on top [N/m].
@@ -71,13 +76,17 @@ impl Tangent {
             self.add_bend([links[0][0], links[0][1], links[1][1]], &blocks, own);
         }
         self.hold(layout, supports);
+        if self.pattern != layout.pattern {
+            self.factor.lay_out(&layout.graph, &layout.symbolic);
+            self.pattern = layout.pattern;
+        }
         self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.links, &layout.ends)
     }
 
     /// Moves of nodes under pulls, both one a node; moves of held nodes are zero.
-    pub(super) fn solve(&mut self, layout: &Layout, supports: &Supports, vectors: &mut [Lanes]) {
+    pub(super) fn solve(&mut self, supports: &Supports, vectors: &mut [Lanes]) {
         let mut side: Vec<Lanes> = supports.nodes.iter().map(|&node| vectors[node as usize]).collect();
-        self.factor.solve(&layout.symbolic, &mut side);
+        self.factor.solve(&mut side);
         vectors.fill([0.0; 4]);
         for (&node, value) in supports.nodes.iter().zip(side) {
             vectors[node as usize] = value;
@@ -144,15 +153,22 @@ pub(super) fn own_bend_stiffness(bend: &Bend) -> f64 {
 
 /// Stiffness of a spring along and across its direction [N/m].
 pub(super) fn moduli(network: &Network<'_>, spring: usize, length: f64) -> [f64; 2] {
+    let (k, rest, constant) = (network.stiffness[spring], network.rest_length[spring], network.force[spring]);
+    let force = network.force_at(spring, length);
+    let slack = force == 0.0 && network.sense[spring] != Sense::Both;
     // A spring that starts at its rest length counts as taut: rounding would decide otherwise.
-    let (k, rest) = (network.stiffness[spring], network.rest_length[spring]);
-    let at_rest = (network.force[spring] + k * (length - rest)).abs() <= 1e-14 * k * rest;
-    let axial = if at_rest {
-        network.curve_of(spring).map_or(k, |curve| k * curve.slope(0.0))
-    } else {
-        network.stiffness_at(spring, length)
+    let at_rest = (constant + k * (length - rest)).abs() <= 1e-14 * k * rest;
+    let axial = match network.curve_of(spring) {
+        _ if slack && !at_rest => 0.0,
+        None => k,
+        Some(curve) => k * curve.slope((length - rest) / rest),
     };
-    [axial, force_density(network, spring, length)]
+    let across = match (rest, constant) {
+        (0.0, 0.0) => axial,
+        _ if length > 0.0 => force / length,
+        _ => 0.0,
+    };
+    [axial, across]
 }
 
 /// k n nᵀ + (F/L)(I − n nᵀ), the second term not below zero when `clamped`.

@@ -1,7 +1,9 @@
 //! Factors with three by three numbers an entry: one block a pair of nodes.
 //!
-//! Left-looking L D Lᵀ as in [`super::ScalarFactor`], on the same pattern.
+//! Left-looking L D Lᵀ (George & Liu, "Computer solution of large sparse positive definite systems", 1981), column by
+//! column.
 
+use super::columns::Columns as Layout;
 use super::graph::Graph;
 use super::symbolic::Symbolic;
 use super::{Lanes, NotPositiveDefinite};
@@ -19,6 +21,8 @@ const ZERO: Columns = [[0.0; 4]; 3];
 /// A factor L D Lᵀ of blocks and its workspace.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct BlockFactor {
+    layout: Layout,
+    order: Vec<u32>,
     values: Vec<Columns>,
     pivots: Vec<Columns>,
     inverses: Vec<Columns>,
@@ -27,8 +31,14 @@ pub struct BlockFactor {
 }
 
 impl BlockFactor {
+    /// Lays the factor out.
+    pub fn lay_out(&mut self, graph: &Graph, symbolic: &Symbolic) {
+        self.layout.build(graph, symbolic);
+        self.order.clone_from(&symbolic.order);
+    }
+
     /// Factors the matrix of a diagonal, one symmetric block a row, and of `links`, one block a link off the diagonal:
-    /// rows of its first end, columns of its second; `ends` are the rows of the links.
+    /// rows of its first end, columns of its second; `ends` are the rows of the links. It was laid out for the same graph.
     ///
     /// # Errors
     /// A pivot that is not positive definite; the factor is of no use then.
@@ -41,7 +51,7 @@ impl BlockFactor {
         ends: &[[u32; 2]],
     ) -> Result<(), NotPositiveDefinite> {
         let size = graph.rows();
-        self.values.resize(symbolic.fill(), ZERO);
+        self.values.resize(self.layout.rows.len(), ZERO);
         for list in [&mut self.pivots, &mut self.inverses] {
             list.resize(size, ZERO);
         }
@@ -52,11 +62,11 @@ impl BlockFactor {
     }
 
     /// Replaces a right-hand side, one vector a row of the matrix, by its solution.
-    pub fn solve(&mut self, symbolic: &Symbolic, side: &mut [Lanes]) {
+    pub fn solve(&mut self, side: &mut [Lanes]) {
         self.sides.clear();
-        self.sides.extend(symbolic.order.iter().map(|&row| side[row as usize]));
-        Arch::new().dispatch(Substitute { factor: self, symbolic });
-        for (&value, &row) in self.sides.iter().zip(&symbolic.order) {
+        self.sides.extend(self.order.iter().map(|&row| side[row as usize]));
+        Arch::new().dispatch(Substitute { factor: self });
+        for (&value, &row) in self.sides.iter().zip(&self.order) {
             side[row as usize] = value;
         }
     }
@@ -76,8 +86,10 @@ impl NullaryFnOnce for Factorise<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let BlockFactor { values, pivots, inverses, dense, .. } = self.factor;
-        let Symbolic { order, place, starts, rows, row_starts, entries, .. } = self.symbolic;
+        let BlockFactor { layout, values, pivots, inverses, dense, .. } = self.factor;
+        let Layout { starts, rows, row_starts, entries, .. } = layout;
+        let (order, place) = (&self.symbolic.order, &self.symbolic.place);
+        let (values, dense) = (values.as_mut_slice(), dense.as_mut_slice());
         for at in 0..order.len() {
             let row = order[at];
             for (other, link) in self.graph.of(row) {
@@ -122,7 +134,6 @@ impl NullaryFnOnce for Factorise<'_> {
 
 struct Substitute<'a> {
     factor: &'a mut BlockFactor,
-    symbolic: &'a Symbolic,
 }
 
 impl NullaryFnOnce for Substitute<'_> {
@@ -130,8 +141,9 @@ impl NullaryFnOnce for Substitute<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let BlockFactor { values, inverses, sides, .. } = self.factor;
-        let Symbolic { starts, rows, .. } = self.symbolic;
+        let BlockFactor { layout, values, inverses, sides, .. } = self.factor;
+        let Layout { starts, rows, .. } = layout;
+        let (values, sides) = (values.as_slice(), sides.as_mut_slice());
         let column = |at: usize| starts[at] as usize..starts[at + 1] as usize;
         for at in 0..sides.len() {
             let side = sides[at].map(|value| -value);

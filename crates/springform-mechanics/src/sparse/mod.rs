@@ -7,7 +7,9 @@
 //! by hand, so that they give the same bits on every processor.
 
 mod blocks;
+mod columns;
 mod graph;
+mod panels;
 mod scalar;
 mod symbolic;
 
