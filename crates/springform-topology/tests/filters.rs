@@ -270,7 +270,7 @@ fn support_springs_of_all_sixteen_patterns() {
     };
     for pattern in 0..16u8 {
         let hanging = std::array::from_fn(|side| pattern >> side & 1 == 1);
-        let found = support_springs(hanging).into_iter().map(|ends| ends.map(point)).collect();
+        let found = support_springs(hanging).map(|ends| ends.map(point)).collect();
         assert_eq!(sorted(found), sorted(supports(hanging)), "hanging {hanging:?}");
     }
 }

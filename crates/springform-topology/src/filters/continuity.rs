@@ -2,116 +2,146 @@
 //!
 //! A spring carries force only if it lies on a path between two different anchors. With one virtual node, tied
 //! to each anchor, those are the springs of the biconnected components that hold the virtual node.
-//! Hopcroft & Tarjan, "Algorithm 447: efficient algorithms for graph manipulation", 1973; iterative here.
+//! Hopcroft & Tarjan, "Algorithm 447: efficient algorithms for graph manipulation", 1973. Here no stack of edges is
+//! kept: whether the component of an edge holds the root is inherited along the tree, which takes three sweeps
+//! over the order in which nodes were found.
 
 /// Marks the springs that lie on a path between two different anchors.
 ///
 /// `springs` are pairs of nodes below `node_count`, each pair once; `anchors` are different nodes.
 pub fn carrying(node_count: usize, springs: &[[u32; 2]], anchors: &[u32]) -> Vec<bool> {
-    let graph = Graph::new(node_count, springs, anchors);
-    Search::new(&graph, springs.len()).run()
+    let mut search = Search::default();
+    search.run(node_count, springs.iter().copied(), anchors.iter().copied());
+    springs.iter().map(|&ends| search.carries(ends)).collect()
 }
 
-/// Adjacency of nodes and the virtual node (the last one); arcs hold the far node and the edge.
-struct Graph {
-    starts: Vec<u32>,
-    arcs: Vec<(u32, u32)>,
+/// The root's number in the order of finding: it is the virtual node.
+const ROOT: u32 = 0;
+
+/// No number: the search has not found the node.
+const UNFOUND: u32 = u32::MAX;
+
+/// A search in depth, and the memory for the next one.
+#[derive(Clone, Default)]
+pub(crate) struct Search {
+    /// Neighbours of every node; while the search goes on, `next` is the first that it has not looked at.
+    arcs: Vec<u32>,
+    next: Vec<u32>,
+    ends: Vec<u32>,
+    /// Number of every node in the order of finding.
+    found: Vec<u32>,
+    /// By that number: the node above in the tree, the lowest number reached by one arc from the subtree, and
+    /// whether the component of the edge from above holds the root.
+    above: Vec<u32>,
+    lowest: Vec<u32>,
+    carries: Vec<bool>,
+    path: Vec<u32>,
 }
 
-impl Graph {
-    fn new(node_count: usize, springs: &[[u32; 2]], anchors: &[u32]) -> Self {
-        let root = node_count as u32;
-        let edges = || springs.iter().copied().chain(anchors.iter().map(|&anchor| [root, anchor]));
-        let mut starts = vec![0u32; node_count + 2];
-        for [a, b] in edges() {
-            starts[a as usize + 1] += 1;
-            starts[b as usize + 1] += 1;
+impl Search {
+    /// Searches from the anchors; the arguments are those of [`carrying`].
+    pub fn run(
+        &mut self,
+        node_count: usize,
+        springs: impl Iterator<Item = [u32; 2]> + Clone,
+        anchors: impl Iterator<Item = u32> + Clone,
+    ) {
+        self.list_neighbours(node_count, springs.clone());
+        self.found.clear();
+        self.found.resize(node_count, UNFOUND);
+        self.above.clear();
+        self.above.push(ROOT);
+        for anchor in anchors.clone() {
+            self.find_from(anchor);
         }
-        for node in 0..=node_count {
-            starts[node + 1] += starts[node];
+        self.sweep(springs, anchors);
+    }
+
+    /// A spring, given by its ends, lies on a path between two different anchors.
+    pub fn carries(&self, [a, b]: [u32; 2]) -> bool {
+        let (a, b) = (self.found[a as usize], self.found[b as usize]);
+        // Where one end is not found, neither is.
+        a != UNFOUND && self.carries[a.max(b) as usize]
+    }
+
+    fn list_neighbours(&mut self, node_count: usize, springs: impl Iterator<Item = [u32; 2]> + Clone) {
+        self.next.clear();
+        self.next.resize(node_count, 0);
+        for [a, b] in springs.clone() {
+            self.next[a as usize] += 1;
+            self.next[b as usize] += 1;
         }
-        let mut next = starts.clone();
-        let mut arcs = vec![(0, 0); starts[node_count + 1] as usize];
-        for (edge, [a, b]) in edges().enumerate() {
+        self.ends.clear();
+        let mut end = 0;
+        for next in &mut self.next {
+            let count = *next;
+            *next = end;
+            self.ends.push(end);
+            end += count;
+        }
+        self.arcs.resize(end as usize, 0);
+        for [a, b] in springs {
             for (from, to) in [(a, b), (b, a)] {
-                arcs[next[from as usize] as usize] = (to, edge as u32);
-                next[from as usize] += 1;
+                let end = &mut self.ends[from as usize];
+                self.arcs[*end as usize] = to;
+                *end += 1;
             }
         }
-        Graph { starts, arcs }
     }
-}
 
-struct Search<'a> {
-    graph: &'a Graph,
-    spring_count: usize,
-    /// Order of discovery, 0 for undiscovered nodes.
-    found: Vec<u32>,
-    lowest: Vec<u32>,
-    next_arc: Vec<u32>,
-    edge_stack: Vec<u32>,
-    path: Vec<(u32, u32)>,
-}
-
-impl<'a> Search<'a> {
-    fn new(graph: &'a Graph, spring_count: usize) -> Self {
-        let nodes = graph.starts.len() - 1;
-        Search {
-            graph,
-            spring_count,
-            found: vec![0; nodes],
-            lowest: vec![0; nodes],
-            next_arc: graph.starts[..nodes].to_vec(),
-            edge_stack: Vec::new(),
-            path: Vec::new(),
+    /// Finds what can be reached from an anchor and has not been found.
+    fn find_from(&mut self, anchor: u32) {
+        let Search { arcs, next, ends, found, above, path, .. } = self;
+        if found[anchor as usize] != UNFOUND {
+            return;
         }
-    }
-
-    fn run(mut self) -> Vec<bool> {
-        const NO_EDGE: u32 = u32::MAX;
-        let root = (self.graph.starts.len() - 2) as u32;
-        let mut carrying = vec![false; self.spring_count];
-        let mut time = 1;
-        self.found[root as usize] = time;
-        self.lowest[root as usize] = time;
-        self.path.push((root, NO_EDGE));
-        while let Some(&(node, by)) = self.path.last() {
-            let at = node as usize;
-            if self.next_arc[at] < self.graph.starts[at + 1] {
-                let (far, edge) = self.graph.arcs[self.next_arc[at] as usize];
-                self.next_arc[at] += 1;
-                if edge == by {
-                    continue;
-                }
-                if self.found[far as usize] == 0 {
-                    time += 1;
-                    self.found[far as usize] = time;
-                    self.lowest[far as usize] = time;
-                    self.edge_stack.push(edge);
-                    self.path.push((far, edge));
-                } else if self.found[far as usize] < self.found[at] {
-                    self.edge_stack.push(edge);
-                    self.lowest[at] = self.lowest[at].min(self.found[far as usize]);
-                }
+        found[anchor as usize] = above.len() as u32;
+        above.push(ROOT);
+        let mut node = anchor as usize;
+        loop {
+            let arc = next[node];
+            if arc == ends[node] {
+                let Some(back) = path.pop() else { return };
+                node = back as usize;
                 continue;
             }
-            self.path.pop();
-            let Some(&(parent, _)) = self.path.last() else { break };
-            if self.lowest[at] >= self.found[parent as usize] {
-                while let Some(edge) = self.edge_stack.pop() {
-                    if parent == root && (edge as usize) < self.spring_count {
-                        carrying[edge as usize] = true;
-                    }
-                    if edge == by {
-                        break;
-                    }
-                }
-            } else {
-                let lowest = self.lowest[at];
-                let above = &mut self.lowest[parent as usize];
-                *above = (*above).min(lowest);
+            next[node] = arc + 1;
+            let far = arcs[arc as usize] as usize;
+            if found[far] == UNFOUND {
+                let number = above.len() as u32;
+                above.push(found[node]);
+                found[far] = number;
+                path.push(node as u32);
+                node = far;
             }
         }
-        carrying
+    }
+
+    fn sweep(&mut self, springs: impl Iterator<Item = [u32; 2]>, anchors: impl Iterator<Item = u32>) {
+        let Search { found, above, lowest, carries, .. } = self;
+        lowest.clear();
+        lowest.extend(0..above.len() as u32);
+        for anchor in anchors {
+            lowest[found[anchor as usize] as usize] = ROOT;
+        }
+        for [a, b] in springs {
+            let (a, b) = (found[a as usize], found[b as usize]);
+            if a != UNFOUND {
+                let lowest = &mut lowest[a.max(b) as usize];
+                *lowest = (*lowest).min(a.min(b));
+            }
+        }
+        for number in (1..above.len()).rev() {
+            let up = above[number] as usize;
+            lowest[up] = lowest[up].min(lowest[number]);
+        }
+        carries.clear();
+        carries.push(true);
+        for number in 1..above.len() {
+            let up = above[number];
+            // The edge from the root to an anchor is its component's first; others share the edge above if the
+            // subtree reaches past it.
+            carries.push(up == ROOT || (carries[up as usize] && lowest[number] < up));
+        }
     }
 }

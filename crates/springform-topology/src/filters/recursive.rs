@@ -56,30 +56,36 @@ pub fn close(mesh: &BaseMesh, forest: &mut Forest) -> Result<Vec<Edit>, EditErro
 /// one: to the opposite corners    two opposite: joined    two adjacent: joined, and each to the far corner
 /// three: the opposite pair joined, the third to both      four: all to the centre
 /// ```
-pub fn support_springs(hanging: [bool; 4]) -> Vec<[Support; 2]> {
+pub fn support_springs(hanging: [bool; 4]) -> impl Iterator<Item = [Support; 2]> {
     use Support::{Centre, Corner, Hanging};
-    let sides: Vec<u8> = (0..4).filter(|&side| hanging[usize::from(side)]).collect();
+    let on = |side: u8| hanging[usize::from(side % 4)];
     let turned = |base: u8, by: u8| (base + by) % 4;
-    match sides.as_slice() {
-        [] => Vec::new(),
-        &[side] => vec![[Hanging(side), Corner(turned(side, 2))], [Hanging(side), Corner(turned(side, 3))]],
-        &[a, b] if b - a == 2 => vec![[Hanging(a), Hanging(b)]],
-        &[a, b] => {
-            let first = if b - a == 1 { a } else { b };
-            let far = Corner(turned(first, 3));
-            vec![[Hanging(a), Hanging(b)], [Hanging(a), far], [Hanging(b), far]]
+    const NOTHING: [Support; 2] = [Centre; 2];
+    let first = |holds: &dyn Fn(u8) -> bool| (0..4).find(|&side| holds(side)).unwrap_or(0);
+    let (count, springs) = match hanging.iter().filter(|&&hangs| hangs).count() {
+        0 => (0, [NOTHING; 4]),
+        1 => {
+            let side = first(&on);
+            let to = |corner: u8| [Hanging(side), Corner(turned(side, corner))];
+            (2, [to(2), to(3), NOTHING, NOTHING])
         }
-        &[_, _, _] => {
-            let without = (0..4).find(|&side| !hanging[usize::from(side)]).unwrap_or(0);
-            let (left, right, third) = (turned(without, 3), turned(without, 1), turned(without, 2));
-            vec![
-                [Hanging(left), Hanging(right)],
-                [Hanging(third), Hanging(left)],
-                [Hanging(third), Hanging(right)],
-            ]
+        2 if on(0) == on(2) => {
+            let side = first(&on);
+            (1, [[Hanging(side), Hanging(turned(side, 2))], NOTHING, NOTHING, NOTHING])
         }
-        _ => (0..4).map(|side| [Hanging(side), Centre]).collect(),
-    }
+        2 => {
+            let side = first(&|side| on(side) && on(side + 1));
+            let (next, far) = (Hanging(turned(side, 1)), Corner(turned(side, 3)));
+            (3, [[Hanging(side), next], [Hanging(side), far], [next, far], NOTHING])
+        }
+        3 => {
+            let without = first(&|side| !on(side));
+            let [right, third, left] = [1, 2, 3].map(|by| Hanging(turned(without, by)));
+            (3, [[left, right], [third, left], [third, right], NOTHING])
+        }
+        _ => (4, [0, 1, 2, 3].map(|side| [Hanging(side), Centre])),
+    };
+    springs.into_iter().take(count)
 }
 
 /// An end of a support spring.
