@@ -8,6 +8,7 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::{PhenotypeError, Setting};
 use springform_evolution::selection::{Weighting, WeightingParameters};
+use springform_evolution::workspace::Workspace;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_topology::base_mesh::BaseMesh;
@@ -33,7 +34,9 @@ fn main() {
 #[inline(never)]
 fn evaluate(evolution: &Evolution, count: u32) -> u64 {
     let number = evolution.generation() + 1;
-    (0..count).fold(0xcbf2_9ce4_8422_2325, |hash, index| absorb(hash, &evolution.individual(number, index)))
+    let mut workspace = Workspace::default();
+    let mut individual = |index| evolution.individual_in(number, index, &mut workspace, &mut |_| {});
+    (0..count).fold(0xcbf2_9ce4_8422_2325, |hash, index| absorb(hash, &individual(index)))
 }
 
 fn absorb(hash: u64, individual: &Individual) -> u64 {

@@ -42,6 +42,22 @@ impl Growth {
         method: Method,
         anchors: &[u32],
     ) -> Result<&Expression, ExpressionError> {
+        self.express_observed(mesh, forest, catalogue, method, anchors, || {})
+    }
+
+    /// Does the same and calls `grown` whenever nodes and springs are grown and the continuity filter begins.
+    ///
+    /// # Errors
+    /// Those of [`super::express`].
+    pub fn express_observed(
+        &mut self,
+        mesh: &BaseMesh,
+        forest: &Forest,
+        catalogue: &Catalogue,
+        method: Method,
+        anchors: &[u32],
+        mut grown: impl FnMut(),
+    ) -> Result<&Expression, ExpressionError> {
         self.expression.cell_springs.clear();
         self.expression.spring_cells.clear();
         list_cells(forest, &mut self.expression.cells);
@@ -49,6 +65,7 @@ impl Growth {
         loop {
             self.stitching.stitch(mesh, &self.expression.cells, catalogue, method);
             self.gather(catalogue, method, forest);
+            grown();
             self.filter(anchors);
             let Some(&loose) = self.loose.first() else {
                 self.finish(anchors);
