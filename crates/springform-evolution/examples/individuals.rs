@@ -1,7 +1,7 @@
-//! Evaluates mutants of one parent again and again: `individuals [COUNT] [SPRINGS] [recursive]`.
+//! Evaluates mutants of one parent: `individuals [COUNT] [SPRINGS] [recursive]`.
 //!
-//! Counted by `valgrind --tool=callgrind --toggle-collect='individuals::evaluate'`. It prints a digest of all
-//! measures, the same for whatever way they are computed.
+//! Prints the median time of each stage, and a digest of all measures, which is the same for whatever way they are
+//! computed. `valgrind --tool=callgrind --toggle-collect='individuals::evaluate'` counts its instructions.
 
 use springform_evolution::evolve::{Evolution, Individual, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
@@ -11,11 +11,13 @@ use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
+use springform_mechanics::stage::STAGES;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
 use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
 use springform_topology::framework::{Framework, Grid, Part, Shape, Side};
+use std::time::Instant;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -24,10 +26,33 @@ fn main() {
     let (count, springs) = (number(0, 500), number(1, 2000));
     let recursive = arguments.iter().any(|word| word == "recursive");
     let evolution = grown(recursive, springs).expect("the cylinder gives a net");
-    let began = std::time::Instant::now();
-    let digest = evaluate(&evolution, count);
-    let each = 1e3 * began.elapsed().as_secs_f64() / f64::from(count);
-    println!("{} springs, {each:.4} ms each, digest {digest:016x}", evolution.parent().measures.springs);
+    println!("{} springs, digest {:016x}", evolution.parent().measures.springs, evaluate(&evolution, count));
+    for (name, seconds) in stage_times(&evolution, count) {
+        println!("{name:>8} {:8.1} us", 1e6 * seconds);
+    }
+}
+
+/// Median seconds of each stage and of all together.
+fn stage_times(evolution: &Evolution, count: u32) -> Vec<(&'static str, f64)> {
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); STAGES.len() + 1];
+    let mut workspace = Workspace::default();
+    for index in 0..count {
+        let mut spent = vec![0.0; STAGES.len()];
+        let mut last = Instant::now();
+        evolution.individual_in(evolution.generation() + 1, index, &mut workspace, &mut |stage| {
+            let now = Instant::now();
+            spent[stage as usize] += (now - last).as_secs_f64();
+            last = now;
+        });
+        spent.push(spent.iter().sum());
+        times.iter_mut().zip(spent).for_each(|(times, spent)| times.push(spent));
+    }
+    let median = |mut times: Vec<f64>| {
+        times.sort_unstable_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    let names = STAGES.iter().map(|&(_, name)| name).chain(["all"]);
+    names.zip(times.into_iter().map(median)).collect()
 }
 
 /// A digest of the measures of `count` mutants.

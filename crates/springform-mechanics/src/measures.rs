@@ -166,16 +166,23 @@ fn border_nodes(mesh: &BaseMesh, expression: &Expression, border: &Border) -> Ve
 
 fn area(expression: &Expression, positions: &[Vector]) -> f64 {
     let mut total = 0.0;
-    for (cell, expressed) in expression.cells.iter().enumerate() {
-        let boundary = expression.cell_boundaries.of(cell as u32);
+    let boundaries = expression.cell_boundaries.starts().windows(2);
+    for (expressed, ends) in expression.cells.iter().zip(boundaries) {
+        let boundary = &expression.cell_boundaries.items()[ends[0] as usize..ends[1] as usize];
         if expressed.content.kind == NULL || boundary.len() < 3 {
             continue;
         }
         let at = |node: &u32| positions[*node as usize];
         let middle = mean(boundary.iter().map(at));
-        for (here, next) in boundary.iter().zip(boundary.iter().cycle().skip(1)) {
-            total += 0.5 * length(cross(subtract(at(here), middle), subtract(at(next), middle)));
+        let mut add = |here: Vector, next: Vector| total += 0.5 * length(cross(here, next));
+        let first = subtract(at(&boundary[0]), middle);
+        let mut here = first;
+        for node in &boundary[1..] {
+            let next = subtract(at(node), middle);
+            add(here, next);
+            here = next;
         }
+        add(here, first);
     }
     total
 }

@@ -178,6 +178,16 @@ impl BaseMesh {
         self.face_sides[face as usize][usize::from(side)]
     }
 
+    /// The edges under the sides of a face.
+    pub(crate) fn side_edges(&self, face: u32) -> [SideEdge; 4] {
+        self.face_sides[face as usize]
+    }
+
+    /// Which edges are free, in order of edges.
+    pub(crate) fn free_edges(&self) -> impl Iterator<Item = bool> {
+        self.edge_faces.starts().windows(2).map(|ends| ends[1] - ends[0] == 1)
+    }
+
     /// All sides of faces that lie on an edge.
     pub fn faces_at_edge(&self, edge: u32) -> &[FaceSide] {
         self.edge_faces.of(edge)

@@ -2,7 +2,7 @@
 
 use super::springs::Gathering;
 use super::stitching::{NONE, Stitching};
-use super::{ExpressedCell, Expression, ExpressionError, list_cells};
+use super::{ExpressedCell, Expression, ExpressionError};
 use crate::base_mesh::BaseMesh;
 use crate::cell_type::{Catalogue, Point};
 use crate::filters::Method;
@@ -21,8 +21,10 @@ pub struct Growth {
     inner: Vec<u32>,
     /// Pairs of nodes whose springs a hand has cut, ascending.
     cut: Vec<[u32; 2]>,
+    /// Place of every gathered spring among the sorted ones, or `NONE`; for owners only.
+    sorted: Vec<u32>,
     search: Search,
-    /// Numbers of nodes and springs after the filter, `NONE` for those that are left out.
+    /// Numbers of nodes and springs after the filter, `NONE` for those that are left out; empty if all stay.
     node_numbers: Vec<u32>,
     spring_numbers: Vec<u32>,
     /// Anchors without springs after the filter.
@@ -60,10 +62,10 @@ impl Growth {
     ) -> Result<&Expression, ExpressionError> {
         self.expression.cell_springs.clear();
         self.expression.spring_cells.clear();
-        list_cells(forest, &mut self.expression.cells);
-        check_types(&self.expression.cells, catalogue, method)?;
+        self.expression.cells.clear();
         loop {
-            self.stitching.stitch(mesh, &self.expression.cells, catalogue, method);
+            self.stitching.stitch(mesh, forest, catalogue, method, &mut self.expression.cells);
+            check_types(&self.expression.cells, catalogue, method)?;
             self.gather(catalogue, method, forest);
             grown();
             self.filter(anchors);
@@ -90,15 +92,16 @@ impl Growth {
 
     /// Adds `cell_springs` and `spring_cells` to what was expressed last.
     pub fn add_owners(&mut self) {
-        let Growth { expression, stitching, gathering, inner, spring_numbers, .. } = self;
+        let Growth { expression, stitching, gathering, inner, sorted, cut, spring_numbers, .. } = self;
         let Expression { cells, springs, cell_springs, spring_cells, .. } = expression;
+        gathering.list_sorted(cut, sorted);
         cell_springs.clear();
         for cell in 0..cells.len() {
             cell_springs.add(|items| {
                 let first = items.len();
                 let mut own = |gathered: u32| {
-                    let sorted = gathering.sorted[gathered as usize];
-                    let number = if sorted == NONE { NONE } else { spring_numbers[sorted as usize] };
+                    let sorted = sorted[gathered as usize];
+                    let number = spring_numbers.get(sorted as usize).copied().unwrap_or(sorted);
                     if number != NONE {
                         insert_sorted(items, first, number);
                     }
@@ -148,7 +151,7 @@ impl Growth {
                 Override::Cut => cut.push([a as u32, b as u32]),
             }
         }
-        gathering.sort(|nodes| !cut.is_empty() && cut.binary_search(&nodes).is_ok(), springs);
+        gathering.sort(cut, springs);
     }
 
     /// Numbers what carries force, and lists the anchors at which nothing does.
@@ -158,22 +161,24 @@ impl Growth {
         let nodes = stitching.nodes.len();
         let numbers = anchors.iter().map(|&vertex| stitching.vertex(vertex));
         search.run(nodes, springs.iter().map(|spring| spring.nodes), numbers.clone());
+        loose.clear();
         node_numbers.clear();
-        node_numbers.resize(nodes, NONE);
         spring_numbers.clear();
-        let mut kept = 0;
-        for spring in springs {
-            if search.carries(spring.nodes) {
-                spring_numbers.push(kept);
-                kept += 1;
-                spring.nodes.into_iter().for_each(|node| node_numbers[node as usize] = 0);
-            } else {
-                spring_numbers.push(NONE);
-            }
+        if search.all_carry() {
+            return;
         }
+        node_numbers.resize(nodes, NONE);
+        let mut kept = 0;
+        spring_numbers.extend(springs.iter().map(|spring| {
+            if !search.carries(spring.nodes) {
+                return NONE;
+            }
+            spring.nodes.into_iter().for_each(|node| node_numbers[node as usize] = 0);
+            kept += 1;
+            kept - 1
+        }));
         let present = node_numbers.iter_mut().filter(|number| **number != NONE);
         present.zip(0..).for_each(|(node, number)| *node = number);
-        loose.clear();
         let numbered = numbers.map(|node| node_numbers[node as usize]).enumerate();
         loose.extend(numbered.filter(|&(_, number)| number == NONE).map(|(anchor, _)| anchor));
     }
@@ -181,14 +186,15 @@ impl Growth {
     /// Leaves out what carries nothing.
     fn finish(&mut self, anchors: &[u32]) {
         let Growth { expression, stitching, node_numbers, spring_numbers, .. } = self;
-        let number = |node: u32| node_numbers[node as usize];
+        let vertices = anchors.iter().map(|&vertex| stitching.vertex(vertex));
         expression.anchors.clear();
-        expression.anchors.extend(anchors.iter().map(|&vertex| number(stitching.vertex(vertex))));
+        expression.anchors.extend(vertices);
         std::mem::swap(&mut expression.nodes, &mut stitching.nodes);
-        let all = |numbers: &[u32]| !numbers.contains(&NONE);
-        if all(node_numbers) && all(spring_numbers) {
+        if spring_numbers.is_empty() {
             return;
         }
+        let number = |node: u32| node_numbers[node as usize];
+        expression.anchors.iter_mut().for_each(|anchor| *anchor = number(*anchor));
         let mut at = node_numbers.iter();
         expression.nodes.retain(|_| at.next() != Some(&NONE));
         let mut at = spring_numbers.iter();
@@ -218,6 +224,9 @@ fn check_types(
     catalogue: &Catalogue,
     method: Method,
 ) -> Result<(), ExpressionError> {
+    if method == Method::Dynamic {
+        return Ok(());
+    }
     let refused = |cell: &&ExpressedCell| !method.allows(cell.content.kind, catalogue);
     match cells.iter().find(refused) {
         None => Ok(()),

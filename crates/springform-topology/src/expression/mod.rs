@@ -105,15 +105,10 @@ pub fn express(
 /// The cells that stand as leaves after the switches, in order of face and child.
 pub fn expressed_cells(forest: &Forest) -> Vec<ExpressedCell> {
     let mut cells = Vec::new();
-    list_cells(forest, &mut cells);
-    cells
-}
-
-fn list_cells(forest: &Forest, cells: &mut Vec<ExpressedCell>) {
-    cells.clear();
     forest.visit_expressed(|index, place| {
         cells.push(ExpressedCell { index, place, content: forest.content(index) });
     });
+    cells
 }
 
 impl Expression {

@@ -11,8 +11,6 @@ pub(super) struct Gathering {
     /// `starts[node]`: first place of the springs with this lower node; one more at the end.
     starts: Vec<u32>,
     places: Vec<u64>,
-    /// Place of every gathered spring among the sorted ones, or `NONE`.
-    pub sorted: Vec<u32>,
 }
 
 /// Up to so many springs of one lower node are sorted by insertion.
@@ -40,30 +38,43 @@ impl Gathering {
         number
     }
 
-    /// Writes all springs but those that are cut, ascending by nodes, each once. What is given twice is a ring's
-    /// spring if it is so once.
-    pub fn sort(&mut self, is_cut: impl Fn([u32; 2]) -> bool, springs: &mut Vec<Spring>) {
+    /// Writes all springs but those between pairs of nodes that are cut, ascending by nodes, each once. What is given
+    /// twice is a ring's spring if it is so once.
+    pub fn sort(&mut self, cut: &[[u32; 2]], springs: &mut Vec<Spring>) {
         self.place();
-        self.sorted.clear();
-        self.sorted.resize(self.gathered.len(), NONE);
         springs.clear();
         let mut from = 0;
         for (lower, &to) in self.starts.iter().enumerate() {
             let places = &mut self.places[from..to as usize];
             from = to as usize;
             sort_few(places);
-            let first = springs.len();
+            let mut last = NONE;
             for &mut place in places {
-                let nodes = [lower as u32, (place >> 32) as u32];
-                let ring = place & 1 == 1;
-                if is_cut(nodes) {
-                    continue;
+                let (higher, ring) = ((place >> 32) as u32, place & 1 == 1);
+                let nodes = [lower as u32, higher];
+                if let Some(spring) = springs.last_mut().filter(|_| higher == last) {
+                    spring.ring |= ring;
+                } else if cut.is_empty() || cut.binary_search(&nodes).is_err() {
+                    springs.push(Spring { nodes, ring });
+                    last = higher;
                 }
-                match springs[first..].last_mut() {
-                    Some(last) if last.nodes == nodes => last.ring |= ring,
-                    _ => springs.push(Spring { nodes, ring }),
+            }
+        }
+    }
+
+    /// Lists the place of every gathered spring among the sorted ones, or `NONE` if it is cut.
+    pub fn list_sorted(&self, cut: &[[u32; 2]], sorted: &mut Vec<u32>) {
+        sorted.clear();
+        sorted.resize(self.gathered.len(), NONE);
+        let (mut from, mut next) = (0, 0);
+        for (lower, &to) in self.starts.iter().enumerate() {
+            let places = &self.places[from..to as usize];
+            from = to as usize;
+            for same in places.chunk_by(|a, b| a >> 32 == b >> 32) {
+                if cut.binary_search(&[lower as u32, (same[0] >> 32) as u32]).is_err() {
+                    same.iter().for_each(|&place| sorted[(place as u32 >> 1) as usize] = next);
+                    next += 1;
                 }
-                self.sorted[(place as u32 >> 1) as usize] = springs.len() as u32 - 1;
             }
         }
     }

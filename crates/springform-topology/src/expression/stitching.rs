@@ -13,9 +13,11 @@
 //! ```
 
 use super::ExpressedCell;
+use crate::address::Place;
 use crate::base_mesh::BaseMesh;
-use crate::cell_type::{Catalogue, CellType, Point};
+use crate::cell_type::{Catalogue, Point};
 use crate::filters::Method;
+use crate::forest::{CellIndex, Content, Forest};
 use crate::node_key::{NodeKey, RESOLUTION, UNITS};
 
 /// No node, no spring.
@@ -72,9 +74,10 @@ struct Seat {
     perimeter: bool,
 }
 
-/// A cell, divided or not, while the cells under it are seated.
+/// A reachable cell, divided or not, while the expressed cells under it are seated.
 #[derive(Clone, Copy)]
 struct Frame {
+    cell: CellIndex,
     corners: [u32; 4],
     ways: [Way; 4],
     level: u8,
@@ -107,18 +110,19 @@ pub(super) struct Stitching {
 }
 
 impl Stitching {
-    /// Stitches expressed cells, given in order of face and child.
+    /// Stitches the expressed cells of a forest in order of face and child. Those that `cells` holds already have the
+    /// contents that they have there; the others are added to it.
     pub fn stitch(
         &mut self,
         mesh: &BaseMesh,
-        cells: &[ExpressedCell],
+        forest: &Forest,
         catalogue: &Catalogue,
         method: Method,
+        cells: &mut Vec<ExpressedCell>,
     ) {
         self.begin(mesh);
-        let mut next = 0;
         for face in 0..mesh.faces().len() as u32 {
-            next = self.seat_face(mesh, face, cells, next, catalogue);
+            self.seat_face(mesh, face, forest, catalogue, cells);
         }
         if method == Method::Recursive {
             self.put_late_centres(cells);
@@ -159,15 +163,19 @@ impl Stitching {
     /// between their ends.
     pub fn append_boundary(&self, cell: usize, nodes: &mut Vec<u32>) -> [bool; 4] {
         let seat = &self.seats[cell];
-        std::array::from_fn(|side| {
-            nodes.push(self.numbers[seat.corners[side] as usize]);
-            let way = seat.ways[side];
-            let divided = self.stretches[way.stretch()].middle != NONE;
-            if divided {
-                self.append_between(way, nodes);
+        let corners = seat.corners.map(|node| self.numbers[node as usize]);
+        let divided = seat.ways.map(|way| self.is_divided(way));
+        if divided == [false; 4] {
+            nodes.extend_from_slice(&corners);
+            return divided;
+        }
+        for side in 0..4 {
+            nodes.push(corners[side]);
+            if divided[side] {
+                self.append_between(seat.ways[side], nodes);
             }
-            divided
-        })
+        }
+        divided
     }
 
     /// Visits the springs along the sides of a cell, as [`Stitching::visit_springs`] numbered them, if it asked for
@@ -197,67 +205,67 @@ impl Stitching {
         self.inside.clear();
         self.late.clear();
         self.stretches.clear();
-        let edges = mesh.edges().iter().zip(0..);
-        self.stretches.extend(
-            edges.map(|(&ends, edge)| Stretch {
-                ring: mesh.is_free_edge(edge),
-                ..Stretch::between(ends, false)
-            }),
-        );
+        let edges = mesh.edges().iter().zip(mesh.free_edges());
+        self.stretches.extend(edges.map(|(&ends, ring)| Stretch { ring, ..Stretch::between(ends, false) }));
     }
 
-    /// Seats the cells of a face; returns the first cell of the next one.
     fn seat_face(
         &mut self,
         mesh: &BaseMesh,
         face: u32,
-        cells: &[ExpressedCell],
-        mut next: usize,
+        forest: &Forest,
         catalogue: &Catalogue,
-    ) -> usize {
-        let ways = std::array::from_fn(|side| {
-            let under = mesh.side_edge(face, side as u8);
-            Way::new(under.edge, under.reversed)
-        });
+        cells: &mut Vec<ExpressedCell>,
+    ) {
+        let ways = mesh.side_edges(face).map(|under| Way::new(under.edge, under.reversed));
         let corners = mesh.faces()[face as usize];
-        self.open.push(Frame { corners, ways, level: 0, at: (0, 0) });
-        while let Some(frame) = self.open.pop() {
-            let cell = &cells[next];
-            // Cells come in the order of this walk, so levels alone tell which ones are divided.
-            if cell.place.level == frame.level {
-                self.seat(face, frame, cell, catalogue.get(cell.content.kind));
-                next += 1;
-            } else {
-                self.divide(face, frame);
+        let mut frame = Frame { cell: forest.top(face), corners, ways, level: 0, at: (0, 0) };
+        loop {
+            match forest.expressed_children(frame.cell) {
+                Some(children) => self.divide(face, &frame, children),
+                None => {
+                    let number = self.seats.len();
+                    if number == cells.len() {
+                        let content = forest.content(frame.cell);
+                        cells.push(ExpressedCell { index: frame.cell, place: frame.place(face), content });
+                    }
+                    self.seat(face, &frame, cells[number].content, catalogue);
+                }
+            }
+            match self.open.pop() {
+                Some(next) => frame = next,
+                None => return,
             }
         }
-        next
     }
 
-    fn seat(&mut self, face: u32, frame: Frame, cell: &ExpressedCell, kind: &CellType) {
-        let mut centre = NONE;
+    fn seat(&mut self, face: u32, frame: &Frame, content: Content, catalogue: &Catalogue) {
+        let kind = catalogue.get(content.kind);
+        let Frame { corners, ways, .. } = *frame;
         if kind.perimeter {
-            for way in frame.ways {
+            for way in ways {
                 self.stretches[way.stretch()].perimeter = true;
             }
         }
-        for point in kind.points() {
-            match point.turned(cell.content.turn) {
-                Point::Middle(side) => {
-                    self.halve(face, &frame, usize::from(side));
+        let mut centre = NONE;
+        if kind.fan || !kind.springs.is_empty() {
+            for point in kind.points() {
+                match point.turned(content.turn) {
+                    Point::Middle(side) => {
+                        self.halve(face, frame, usize::from(side));
+                    }
+                    _ if centre == NONE => centre = self.put_centre(face, frame),
+                    _ => {}
                 }
-                _ if centre == NONE => centre = self.put_centre(face, &frame),
-                _ => {}
             }
         }
-        let Frame { corners, ways, .. } = frame;
         self.seats.push(Seat { corners, ways, centre, perimeter: kind.perimeter });
     }
 
-    fn divide(&mut self, face: u32, frame: Frame) {
+    fn divide(&mut self, face: u32, frame: &Frame, children: [CellIndex; 4]) {
         let [c0, c1, c2, c3] = frame.corners;
-        let [m0, m1, m2, m3] = [0, 1, 2, 3].map(|side| self.halve(face, &frame, side));
-        let x = self.put_centre(face, &frame);
+        let [m0, m1, m2, m3] = [0, 1, 2, 3].map(|side| self.halve(face, frame, side));
+        let x = self.put_centre(face, frame);
         let [t0, t1, t2, t3] = [m0, m1, m2, m3].map(|middle| {
             self.stretches.push(Stretch::between([middle, x], true));
             Way::new(self.stretches.len() as u32 - 1, false)
@@ -265,16 +273,13 @@ impl Stitching {
         let [[a0, b0], [a1, b1], [a2, b2], [a3, b3]] = frame.ways.map(|way| self.halves(way));
         let (level, half) = (frame.level + 1, frame.half());
         let (i, j) = frame.at;
+        let frame =
+            |child: usize, corners, ways, at| Frame { cell: children[child], corners, ways, level, at };
         self.open.extend([
-            Frame { corners: [m3, x, m2, c3], ways: [t3, t2.turned(), b2, a3], level, at: (i, j + half) },
-            Frame {
-                corners: [x, m1, c2, m2],
-                ways: [t1.turned(), b1, a2, t2],
-                level,
-                at: (i + half, j + half),
-            },
-            Frame { corners: [m0, c1, m1, x], ways: [b0, a1, t1, t0.turned()], level, at: (i + half, j) },
-            Frame { corners: [c0, m0, x, m3], ways: [a0, t0, t3.turned(), b3], level, at: (i, j) },
+            frame(3, [m3, x, m2, c3], [t3, t2.turned(), b2, a3], (i, j + half)),
+            frame(2, [x, m1, c2, m2], [t1.turned(), b1, a2, t2], (i + half, j + half)),
+            frame(1, [m0, c1, m1, x], [b0, a1, t1, t0.turned()], (i + half, j)),
+            frame(0, [c0, m0, x, m3], [a0, t0, t3.turned(), b3], (i, j)),
         ]);
     }
 
@@ -315,8 +320,7 @@ impl Stitching {
     fn put_late_centres(&mut self, cells: &[ExpressedCell]) {
         for (cell, expressed) in cells.iter().enumerate() {
             let seat = &self.seats[cell];
-            let divided = |way: &Way| self.stretches[way.stretch()].middle != NONE;
-            if seat.centre == NONE && seat.ways.iter().all(divided) {
+            if seat.centre == NONE && seat.ways.iter().all(|&way| self.is_divided(way)) {
                 let place = expressed.place;
                 let half = UNITS >> (place.level + 1);
                 let key = NodeKey::face(place.face, (2 * place.i + 1) * half, (2 * place.j + 1) * half);
@@ -341,14 +345,20 @@ impl Stitching {
         [near, far]
     }
 
+    /// Appends the nodes between the ends of a way that is divided.
     fn append_between(&self, way: Way, nodes: &mut Vec<u32>) {
-        let middle = self.stretches[way.stretch()].middle;
-        if middle != NONE {
-            let [near, far] = self.halves(way);
+        let [near, far] = self.halves(way);
+        if self.is_divided(near) {
             self.append_between(near, nodes);
-            nodes.push(self.numbers[middle as usize]);
+        }
+        nodes.push(self.numbers[self.stretches[way.stretch()].middle as usize]);
+        if self.is_divided(far) {
             self.append_between(far, nodes);
         }
+    }
+
+    fn is_divided(&self, way: Way) -> bool {
+        self.stretches[way.stretch()].middle != NONE
     }
 
     fn visit_along(&self, stretch: usize, visit: &mut impl FnMut(u32)) {
@@ -367,8 +377,10 @@ impl Stitching {
         self.numbers.resize(self.made as usize, NONE);
         self.nodes.clear();
         self.nodes.extend((0..mesh.vertex_count()).map(NodeKey::vertex));
-        for edge in 0..mesh.edges().len() as u32 {
-            self.number_along(edge, edge as usize, 0, UNITS);
+        for edge in 0..mesh.edges().len() {
+            if self.stretches[edge].middle != NONE {
+                self.number_along(edge as u32, edge, 0, UNITS);
+            }
         }
         let same_face = |a: &FaceNode, b: &FaceNode| a.key.face_bits() == b.key.face_bits();
         for nodes in self.inside.chunk_by_mut(same_face).chain([self.late.as_mut_slice()]) {
@@ -407,6 +419,11 @@ impl Stretch {
 }
 
 impl Frame {
+    fn place(&self, face: u32) -> Place {
+        let shift = RESOLUTION - self.level;
+        Place { face, level: self.level, i: self.at.0 >> shift, j: self.at.1 >> shift }
+    }
+
     /// Half of its side in units of node keys.
     fn half(&self) -> u32 {
         1 << (RESOLUTION - self.level - 1)

@@ -3,8 +3,7 @@
 //! A spring carries force only if it lies on a path between two different anchors. With one virtual node, tied
 //! to each anchor, those are the springs of the biconnected components that hold the virtual node.
 //! Hopcroft & Tarjan, "Algorithm 447: efficient algorithms for graph manipulation", 1973. Here no stack of edges is
-//! kept: whether the component of an edge holds the root is inherited along the tree, which takes three sweeps
-//! over the order in which nodes were found.
+//! kept: whether the component of an edge holds the root is inherited down the tree, from node to node.
 
 /// Marks the springs that lie on a path between two different anchors.
 ///
@@ -21,21 +20,34 @@ const ROOT: u32 = 0;
 /// No number: the search has not found the node.
 const UNFOUND: u32 = u32::MAX;
 
+/// No number: the search has not found the node, which is an anchor. Numbers of found nodes are below.
+const UNFOUND_ANCHOR: u32 = u32::MAX - 1;
+
 /// A search in depth, and the memory for the next one.
 #[derive(Clone, Default)]
 pub(crate) struct Search {
-    /// Neighbours of every node; while the search goes on, `next` is the first that it has not looked at.
+    /// Neighbours of all nodes.
     arcs: Vec<u32>,
-    next: Vec<u32>,
-    ends: Vec<u32>,
+    /// Arcs of every node that the search has not looked at: from here to there.
+    open: Vec<[u32; 2]>,
     /// Number of every node in the order of finding.
     found: Vec<u32>,
-    /// By that number: the node above in the tree, the lowest number reached by one arc from the subtree, and
-    /// whether the component of the edge from above holds the root.
-    above: Vec<u32>,
-    lowest: Vec<u32>,
-    carries: Vec<bool>,
+    /// By that number, the root first: who was found.
+    order: Vec<Found>,
+    /// Nodes from an anchor to the node under search.
     path: Vec<u32>,
+    complete: bool,
+}
+
+/// A node that the search has found.
+#[derive(Clone, Copy)]
+struct Found {
+    /// Number of the node above in the tree.
+    above: u32,
+    /// Lowest number that is one arc away from the node or from what lies below it.
+    lowest: u32,
+    /// The component of the edge from above holds the root.
+    carries: bool,
 }
 
 impl Search {
@@ -46,44 +58,55 @@ impl Search {
         springs: impl Iterator<Item = [u32; 2]> + Clone,
         anchors: impl Iterator<Item = u32> + Clone,
     ) {
-        self.list_neighbours(node_count, springs.clone());
+        self.list_neighbours(node_count, springs);
         self.found.clear();
         self.found.resize(node_count, UNFOUND);
-        self.above.clear();
-        self.above.push(ROOT);
+        self.order.clear();
+        self.order.push(Found { above: ROOT, lowest: ROOT, carries: true });
+        self.complete = true;
         for anchor in anchors.clone() {
+            self.found[anchor as usize] = UNFOUND_ANCHOR;
+        }
+        for anchor in anchors {
             self.find_from(anchor);
         }
-        self.sweep(springs, anchors);
+        self.complete &= self.order.len() == node_count + 1;
+        if !self.complete {
+            self.inherit();
+        }
+    }
+
+    /// Every spring lies on a path between two different anchors, and every node has a spring.
+    pub fn all_carry(&self) -> bool {
+        self.complete
     }
 
     /// A spring, given by its ends, lies on a path between two different anchors.
     pub fn carries(&self, [a, b]: [u32; 2]) -> bool {
         let (a, b) = (self.found[a as usize], self.found[b as usize]);
         // Where one end is not found, neither is.
-        a != UNFOUND && self.carries[a.max(b) as usize]
+        self.complete || (a != UNFOUND && self.order[a.max(b) as usize].carries)
     }
 
     fn list_neighbours(&mut self, node_count: usize, springs: impl Iterator<Item = [u32; 2]> + Clone) {
-        self.next.clear();
-        self.next.resize(node_count, 0);
+        let Search { open, arcs, .. } = self;
+        open.clear();
+        open.resize(node_count, [0, 0]);
         for [a, b] in springs.clone() {
-            self.next[a as usize] += 1;
-            self.next[b as usize] += 1;
+            open[a as usize][1] += 1;
+            open[b as usize][1] += 1;
         }
-        self.ends.clear();
         let mut end = 0;
-        for next in &mut self.next {
-            let count = *next;
-            *next = end;
-            self.ends.push(end);
-            end += count;
+        for arcs in open.iter_mut() {
+            let first = end;
+            end += arcs[1];
+            *arcs = [first, first];
         }
-        self.arcs.resize(end as usize, 0);
+        arcs.resize(end as usize, 0);
         for [a, b] in springs {
             for (from, to) in [(a, b), (b, a)] {
-                let end = &mut self.ends[from as usize];
-                self.arcs[*end as usize] = to;
+                let end = &mut open[from as usize][1];
+                arcs[*end as usize] = to;
                 *end += 1;
             }
         }
@@ -91,57 +114,54 @@ impl Search {
 
     /// Finds what can be reached from an anchor and has not been found.
     fn find_from(&mut self, anchor: u32) {
-        let Search { arcs, next, ends, found, above, path, .. } = self;
-        if found[anchor as usize] != UNFOUND {
+        let Search { arcs, open, found, order, path, complete, .. } = self;
+        if found[anchor as usize] != UNFOUND_ANCHOR {
             return;
         }
-        found[anchor as usize] = above.len() as u32;
-        above.push(ROOT);
-        let mut node = anchor as usize;
+        let (mut node, mut number, mut above) = (anchor as usize, order.len() as u32, ROOT);
+        // An anchor without springs carries nothing.
+        *complete &= open[node][0] < open[node][1];
         loop {
-            let arc = next[node];
-            if arc == ends[node] {
-                let Some(back) = path.pop() else { return };
-                node = back as usize;
-                continue;
-            }
-            next[node] = arc + 1;
-            let far = arcs[arc as usize] as usize;
-            if found[far] == UNFOUND {
-                let number = above.len() as u32;
-                above.push(found[node]);
-                found[far] = number;
-                path.push(node as u32);
-                node = far;
+            let lowest = if found[node] == UNFOUND_ANCHOR { ROOT } else { number };
+            found[node] = number;
+            order.push(Found { above, lowest, carries: above == ROOT });
+            path.push(node as u32);
+            // Up the tree as long as a node has nothing left to look at.
+            loop {
+                let Some(&top) = path.last() else { return };
+                node = top as usize;
+                number = found[node];
+                let [first, end] = open[node];
+                let mut lowest = order[number as usize].lowest;
+                let unfound = arcs[first as usize..end as usize].iter().position(|&far| {
+                    let far = found[far as usize];
+                    lowest = lowest.min(far);
+                    far >= UNFOUND_ANCHOR
+                });
+                order[number as usize].lowest = lowest;
+                if let Some(at) = unfound {
+                    open[node][0] = first + at as u32 + 1;
+                    above = number;
+                    node = arcs[first as usize + at] as usize;
+                    number = order.len() as u32;
+                    break;
+                }
+                path.pop();
+                let up = order[number as usize].above;
+                let reached = &mut order[up as usize].lowest;
+                *reached = (*reached).min(lowest);
+                *complete &= up == ROOT || lowest < up;
             }
         }
     }
 
-    fn sweep(&mut self, springs: impl Iterator<Item = [u32; 2]>, anchors: impl Iterator<Item = u32>) {
-        let Search { found, above, lowest, carries, .. } = self;
-        lowest.clear();
-        lowest.extend(0..above.len() as u32);
-        for anchor in anchors {
-            lowest[found[anchor as usize] as usize] = ROOT;
-        }
-        for [a, b] in springs {
-            let (a, b) = (found[a as usize], found[b as usize]);
-            if a != UNFOUND {
-                let lowest = &mut lowest[a.max(b) as usize];
-                *lowest = (*lowest).min(a.min(b));
-            }
-        }
-        for number in (1..above.len()).rev() {
-            let up = above[number] as usize;
-            lowest[up] = lowest[up].min(lowest[number]);
-        }
-        carries.clear();
-        carries.push(true);
-        for number in 1..above.len() {
-            let up = above[number];
-            // The edge from the root to an anchor is its component's first; others share the edge above if the
-            // subtree reaches past it.
-            carries.push(up == ROOT || (carries[up as usize] && lowest[number] < up));
+    /// Hands down whether an edge's component holds the root: that of an edge from the root does, and others share the
+    /// edge above if what lies below reaches past it.
+    fn inherit(&mut self) {
+        for number in 1..self.order.len() {
+            let Found { above, lowest, .. } = self.order[number];
+            self.order[number].carries =
+                above == ROOT || (self.order[above as usize].carries && lowest < above);
         }
     }
 }
