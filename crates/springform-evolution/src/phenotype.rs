@@ -2,7 +2,7 @@
 
 use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status};
+use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
 use springform_mechanics::network::Network;
 use springform_mechanics::stage::Stage;
@@ -106,6 +106,8 @@ impl Setting {
 pub struct Evaluator {
     growth: Growth,
     network: Network<'static>,
+    solver: Solver,
+    equilibrium: Equilibrium,
 }
 
 /// What an individual is judged by.
@@ -135,9 +137,9 @@ impl Evaluator {
         observe(Stage::Filter);
         assemble_into(expression, embedding, *law, &mut self.network);
         observe(Stage::Nodes);
-        let equilibrium = equilibrium::solve(&self.network, solver);
+        self.solver.solve_into(&self.network, solver, &mut self.equilibrium);
         observe(Stage::Solve);
-        let Equilibrium { positions, forces, residual, status, .. } = &equilibrium;
+        let Equilibrium { positions, forces, residual, status, .. } = &self.equilibrium;
         if *status != Status::Converged {
             return Err(PhenotypeError::Equilibrium(*status, *residual));
         }

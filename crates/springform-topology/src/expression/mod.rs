@@ -5,10 +5,12 @@
 //! continuity filter last. Nodes and springs are numbered in the order of node keys, whatever the order of cells.
 
 mod growth;
+mod kinship;
 mod springs;
 mod stitching;
 
 pub use growth::Growth;
+pub use kinship::Kinship;
 
 use crate::address::Place;
 use crate::base_mesh::{BaseMesh, Groups};
