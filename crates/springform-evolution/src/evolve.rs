@@ -8,7 +8,7 @@ use crate::ending::{Ending, Reason};
 use crate::fitness::{Criterion, Score, Standing};
 use crate::mutation::{Candidates, Palette, Strategy};
 use crate::phenotype::{Evaluation, PhenotypeError, Setting};
-use crate::selection::{WEIGHTINGS, WeightingParameters};
+use crate::selection::{WEIGHTINGS, Weighting, WeightingParameters};
 use crate::workspace::{Workspace, Workspaces};
 use rayon::prelude::*;
 use springform_mechanics::measures::Measures;
@@ -127,7 +127,7 @@ impl Evolution {
         setting.close(&mut forest)?;
         let (generation, start, suf) =
             resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
-        let parent = Parent::new(&setting, &parameters, forest, strategy, suf)?;
+        let parent = Parent::new(&setting, &parameters, forest, strategy, None, suf)?;
         let start = start.unwrap_or_else(|| Standing::from(&parent.measures));
         let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let threads = threads.expect("the operating system gives threads");
@@ -199,7 +199,8 @@ impl Evolution {
         let individual = |index| {
             self.workspaces.with(|workspace| self.individual_in(number, index, workspace, &mut |_| {}))
         };
-        self.threads.install(|| (first..last).into_par_iter().map(individual).collect())
+        // One by one, or a thread would be left with a long stretch when the others are done.
+        self.threads.install(|| (first..last).into_par_iter().with_max_len(1).map(individual).collect())
     }
 
     fn choose_parent(&mut self, individuals: Vec<Individual>) -> Result<Generation, PhenotypeError> {
@@ -208,8 +209,8 @@ impl Evolution {
             let individual = &individuals[index];
             let mut forest = self.parent.forest.clone();
             Edit::apply_all(&individual.edits, &mut forest)?;
-            let (strategy, suf) = (individual.strategy, individual.suf);
-            self.parent = Parent::new(&self.setting, &self.parameters, forest, strategy, suf)?;
+            let Individual { strategy, measures, suf, .. } = *individual;
+            self.parent = Parent::new(&self.setting, &self.parameters, forest, strategy, measures, suf)?;
         }
         self.generation += 1;
         Ok(Generation { number: self.generation, individuals, winner })
@@ -296,20 +297,27 @@ impl Evolution {
 }
 
 impl Parent {
+    /// `measures` are those of the forest, if it has been measured.
     fn new(
         setting: &Setting,
         parameters: &Parameters,
         forest: Forest,
         strategy: Strategy,
+        measures: Option<Measures>,
         suf: Option<f64>,
     ) -> Result<Parent, PhenotypeError> {
-        let phenotype = setting.evaluate(&forest)?;
-        let mut candidates = Candidates::new(&forest, &phenotype.inner_forces());
-        for (weighting, _) in WEIGHTINGS {
-            if parameters.self_adapt || weighting == strategy.weighting {
-                candidates.weigh(weighting, &parameters.weights);
+        let weighs = |weighting| parameters.self_adapt || weighting == strategy.weighting;
+        let (measures, inner_forces) = match measures {
+            Some(measures) if !weighs(Weighting::Stress) => (measures, Vec::new()),
+            _ => {
+                let phenotype = setting.evaluate(&forest)?;
+                (phenotype.measures, phenotype.inner_forces())
             }
+        };
+        let mut candidates = Candidates::new(&forest, &inner_forces);
+        for (weighting, _) in WEIGHTINGS.into_iter().filter(|&(weighting, _)| weighs(weighting)) {
+            candidates.weigh(weighting, &parameters.weights);
         }
-        Ok(Parent { forest, strategy, measures: phenotype.measures, suf, candidates })
+        Ok(Parent { forest, strategy, measures, suf, candidates })
     }
 }
