@@ -405,6 +405,13 @@ class Evolution:
     def individual(self, index: int) -> list[str]:
         """Return the edits that make an individual of the next generation of the parent now."""
 
+    def stages(self, count: int, rounds: int) -> dict[str, NDArray[np.float64]]:
+        """Make the first individuals of the next generation on this thread, round after round.
+
+        Returns the seconds that each stage took, by name, one a round: mutate, filter, nodes,
+        order, factor, solve, measure. The run stays where it is.
+        """
+
     def reached(
         self,
         generations: int | None,

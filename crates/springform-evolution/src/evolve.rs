@@ -6,14 +6,17 @@
 use crate::draws::Draws;
 use crate::ending::{Ending, Reason};
 use crate::fitness::{Criterion, Score, Standing};
-use crate::mutation::{Candidates, Palette, Strategy, mutate};
-use crate::phenotype::{PhenotypeError, Setting};
-use crate::selection::WeightingParameters;
+use crate::mutation::{Candidates, Palette, Strategy};
+use crate::phenotype::{Evaluation, PhenotypeError, Setting};
+use crate::selection::{WEIGHTINGS, Weighting, WeightingParameters};
+use crate::workspace::{Workspace, Workspaces};
 use rayon::prelude::*;
 use springform_mechanics::measures::Measures;
+use springform_mechanics::stage::Stage;
 use springform_topology::MAX_CELLS;
 use springform_topology::cell_type::CellTypeId;
 use springform_topology::edit::Edit;
+use springform_topology::filters::Method;
 use springform_topology::forest::Forest;
 
 /// Mutants that are evaluated between two questions whether to go on.
@@ -88,6 +91,7 @@ pub struct Evolution {
     parent: Parent,
     generation: u32,
     threads: rayon::ThreadPool,
+    workspaces: Workspaces,
 }
 
 /// What one generation gave.
@@ -123,11 +127,12 @@ impl Evolution {
         setting.close(&mut forest)?;
         let (generation, start, suf) =
             resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
-        let parent = Parent::new(&setting, forest, strategy, suf)?;
+        let parent = Parent::new(&setting, &parameters, forest, strategy, None, suf)?;
         let start = start.unwrap_or_else(|| Standing::from(&parent.measures));
         let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let threads = threads.expect("the operating system gives threads");
-        Ok(Evolution { setting, parameters, start, parent, generation, threads })
+        let workspaces = Workspaces::default();
+        Ok(Evolution { setting, parameters, start, parent, generation, threads, workspaces })
     }
 
     /// The parent of the next generation.
@@ -191,8 +196,11 @@ impl Evolution {
     fn batch(&self, first: u32) -> Vec<Individual> {
         let number = self.generation + 1;
         let last = self.parameters.population.min(first.saturating_add(BATCH));
-        self.threads
-            .install(|| (first..last).into_par_iter().map(|index| self.individual(number, index)).collect())
+        let individual = |index| {
+            self.workspaces.with(|workspace| self.individual_in(number, index, workspace, &mut |_| {}))
+        };
+        // One by one, or a thread would be left with a long stretch when the others are done.
+        self.threads.install(|| (first..last).into_par_iter().with_max_len(1).map(individual).collect())
     }
 
     fn choose_parent(&mut self, individuals: Vec<Individual>) -> Result<Generation, PhenotypeError> {
@@ -201,7 +209,8 @@ impl Evolution {
             let individual = &individuals[index];
             let mut forest = self.parent.forest.clone();
             Edit::apply_all(&individual.edits, &mut forest)?;
-            self.parent = Parent::new(&self.setting, forest, individual.strategy, individual.suf)?;
+            let Individual { strategy, measures, suf, .. } = *individual;
+            self.parent = Parent::new(&self.setting, &self.parameters, forest, strategy, measures, suf)?;
         }
         self.generation += 1;
         Ok(Generation { number: self.generation, individuals, winner })
@@ -209,6 +218,17 @@ impl Evolution {
 
     /// Draws and evaluates one mutant of the present parent, the same whenever it is asked for.
     pub fn individual(&self, generation: u32, index: u32) -> Individual {
+        self.individual_in(generation, index, &mut Workspace::default(), &mut |_| {})
+    }
+
+    /// The same in memory that is used again and again; `observe` is told when a stage ends.
+    pub fn individual_in(
+        &self,
+        generation: u32,
+        index: u32,
+        workspace: &mut Workspace,
+        observe: &mut impl FnMut(Stage),
+    ) -> Individual {
         let mut draws = Draws::new(self.parameters.seed, u64::from(generation), u64::from(index));
         let inherited = self.parent.strategy;
         let strategy = if self.parameters.self_adapt { inherited.mutated(&mut draws) } else { inherited };
@@ -217,40 +237,49 @@ impl Evolution {
             catalogue: &self.setting.catalogue,
             weights: &self.parameters.weights,
         };
-        let mut edits = mutate(&self.parent.candidates, &strategy, &palette, &mut draws);
-        let forest = self.grow_mutant(&mut edits);
-        let fingerprint = forest.as_ref().map_or(0, Forest::fingerprint);
-        let criterion = &self.parameters.criterion;
-        match forest.and_then(|forest| self.setting.evaluate(&forest)) {
-            Ok(phenotype) => {
-                let measures = phenotype.measures;
-                let parent = Standing::from(&self.parent.measures);
-                let suf = criterion.suf(&measures, self.start, parent);
-                let score = criterion.score(&measures, self.start, parent);
-                let residual = Some(phenotype.equilibrium.residual);
-                Individual { edits, strategy, fingerprint, measures: Some(measures), residual, suf, score }
-            }
-            Err(_) => Individual {
-                edits,
-                strategy,
-                fingerprint,
-                measures: None,
-                residual: None,
-                suf: None,
-                score: Score::UNDEFINED,
-            },
+        let Workspace { mutator, edits, .. } = workspace;
+        edits.clear();
+        mutator.mutate(&self.parent.candidates, &strategy, &palette, &mut draws, edits);
+        let grown = self.grow_mutant(workspace, observe);
+        let Workspace { forest, evaluator, edits, .. } = workspace;
+        let fingerprint = if grown.is_ok() { forest.fingerprint() } else { 0 };
+        observe(Stage::Mutate);
+        let evaluation = grown.and_then(|()| evaluator.evaluate(&self.setting, forest, observe)).ok();
+        let judged = evaluation.map(|Evaluation { measures, residual }| {
+            let criterion = &self.parameters.criterion;
+            let parent = Standing::from(&self.parent.measures);
+            let suf = criterion.suf(&measures, self.start, parent);
+            (measures, residual, suf, criterion.score(&measures, self.start, parent))
+        });
+        Individual {
+            edits: edits.clone(),
+            strategy,
+            fingerprint,
+            measures: judged.map(|(measures, ..)| measures),
+            residual: judged.map(|(_, residual, ..)| residual),
+            suf: judged.and_then(|(_, _, suf, _)| suf),
+            score: judged.map_or(Score::UNDEFINED, |(.., score)| score),
         }
     }
 
     /// The mutant's closed forest; what closing took is appended to the edits.
-    fn grow_mutant(&self, edits: &mut Vec<Edit>) -> Result<Forest, PhenotypeError> {
-        let mut forest = self.parent.forest.clone();
-        Edit::apply_all(edits, &mut forest)?;
-        edits.extend(self.setting.close(&mut forest)?);
+    fn grow_mutant(
+        &self,
+        workspace: &mut Workspace,
+        observe: &mut impl FnMut(Stage),
+    ) -> Result<(), PhenotypeError> {
+        let Workspace { forest, edits, closure, .. } = workspace;
+        forest.clone_from(&self.parent.forest);
+        Edit::apply_all(edits, forest)?;
+        observe(Stage::Mutate);
+        if self.setting.method == Method::Recursive {
+            closure.close_after(&self.setting.mesh, forest, edits)?;
+        }
+        observe(Stage::Filter);
         if forest.stored() > MAX_CELLS {
             return Err(PhenotypeError::TooManyCells);
         }
-        Ok(forest)
+        Ok(())
     }
 
     fn choose(&self, individuals: &[Individual]) -> Option<usize> {
@@ -268,14 +297,27 @@ impl Evolution {
 }
 
 impl Parent {
+    /// `measures` are those of the forest, if it has been measured.
     fn new(
         setting: &Setting,
+        parameters: &Parameters,
         forest: Forest,
         strategy: Strategy,
+        measures: Option<Measures>,
         suf: Option<f64>,
     ) -> Result<Parent, PhenotypeError> {
-        let phenotype = setting.evaluate(&forest)?;
-        let candidates = Candidates::new(&forest, &phenotype.inner_forces());
-        Ok(Parent { forest, strategy, measures: phenotype.measures, suf, candidates })
+        let weighs = |weighting| parameters.self_adapt || weighting == strategy.weighting;
+        let (measures, inner_forces) = match measures {
+            Some(measures) if !weighs(Weighting::Stress) => (measures, Vec::new()),
+            _ => {
+                let phenotype = setting.evaluate(&forest)?;
+                (phenotype.measures, phenotype.inner_forces())
+            }
+        };
+        let mut candidates = Candidates::new(&forest, &inner_forces);
+        for (weighting, _) in WEIGHTINGS.into_iter().filter(|&(weighting, _)| weighs(weighting)) {
+            candidates.weigh(weighting, &parameters.weights);
+        }
+        Ok(Parent { forest, strategy, measures, suf, candidates })
     }
 }

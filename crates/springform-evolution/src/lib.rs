@@ -15,3 +15,4 @@ pub mod mutation;
 pub mod phenotype;
 pub mod selection;
 pub mod stress_seeking;
+pub mod workspace;

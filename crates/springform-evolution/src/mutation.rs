@@ -1,7 +1,7 @@
 //! Mutation in three steps, as lists of edits (the paper §3.4, Fig. 13).
 
 use crate::draws::Draws;
-use crate::selection::{WEIGHTINGS, Weighting, WeightingParameters, draw_without_replacement, weight};
+use crate::selection::{SumTree, WEIGHTINGS, Weighting, WeightingParameters, weight};
 use springform_topology::MAX_LEVEL;
 use springform_topology::address::Place;
 use springform_topology::cell_type::{Catalogue, CellTypeId};
@@ -82,17 +82,35 @@ struct Candidate {
     on: bool,
     /// Inner force of the cell, or of its subtree [N].
     force: f64,
+    /// Among owners, the one right above; `NONE` for a top-level cell.
+    above: usize,
 }
+
+const NONE: usize = usize::MAX;
+
+/// The steps of a mutation.
+const INSERT: usize = 0;
+const SWITCH: usize = 1;
+const TOGGLE: usize = 2;
 
 /// What can be mutated in a parent, listed once for all its mutants.
 #[derive(Clone, Debug)]
 pub struct Candidates {
-    /// Expressed cells without stored children, above the deepest level.
-    divisible: Vec<Candidate>,
+    /// Expressed cells without stored children, above the deepest level, as indices of `expressed`.
+    divisible: Vec<usize>,
     expressed: Vec<Candidate>,
     /// Reachable cells that own children.
     owners: Vec<Candidate>,
     deepest: u8,
+    weighed: Vec<Weighed>,
+}
+
+/// Candidates under one weighting, step by step.
+#[derive(Clone, Debug)]
+struct Weighed {
+    weighting: Weighting,
+    parameters: WeightingParameters,
+    steps: [SumTree; 3],
 }
 
 impl Candidates {
@@ -104,9 +122,16 @@ impl Candidates {
         let mut above: Vec<usize> = Vec::new();
         let mut deepest = 0;
         forest.visit_reachable(|cell, place| {
-            above.retain(|&owner| owners[owner].place.contains(place));
-            let candidate =
-                Candidate { place, content: forest.content(cell), on: forest.is_on(cell), force: 0.0 };
+            while above.last().is_some_and(|&owner| !owners[owner].place.contains(place)) {
+                above.pop();
+            }
+            let candidate = Candidate {
+                place,
+                content: forest.content(cell),
+                on: forest.is_on(cell),
+                force: 0.0,
+                above: above.last().copied().unwrap_or(NONE),
+            };
             let stored = forest.children(cell).is_some();
             if stored {
                 above.push(owners.len());
@@ -118,14 +143,36 @@ impl Candidates {
                     owners[owner].force += force;
                 }
                 deepest = deepest.max(place.level);
-                let candidate = Candidate { force, ..candidate };
-                expressed.push(candidate);
                 if !stored && place.level < MAX_LEVEL {
-                    divisible.push(candidate);
+                    divisible.push(expressed.len());
                 }
+                expressed.push(Candidate { force, ..candidate });
             }
         });
-        Candidates { divisible, expressed, owners, deepest }
+        Candidates { divisible, expressed, owners, deepest, weighed: Vec::new() }
+    }
+
+    /// Works out the weights under a weighting ahead of the mutants that need them.
+    pub fn weigh(&mut self, weighting: Weighting, parameters: &WeightingParameters) {
+        if self.weighed_by(weighting, parameters).is_none() {
+            let steps = [INSERT, SWITCH, TOGGLE].map(|step| self.sums(step, weighting, parameters));
+            self.weighed.push(Weighed { weighting, parameters: *parameters, steps });
+        }
+    }
+
+    fn weighed_by(&self, weighting: Weighting, parameters: &WeightingParameters) -> Option<&Weighed> {
+        self.weighed.iter().find(|one| one.weighting == weighting && one.parameters == *parameters)
+    }
+
+    fn sums(&self, step: usize, weighting: Weighting, parameters: &WeightingParameters) -> SumTree {
+        let weight = |candidate: &Candidate| {
+            weight(weighting, parameters, candidate.place.level, self.deepest, candidate.force)
+        };
+        match step {
+            INSERT => SumTree::new(self.divisible.iter().map(|&at| weight(&self.expressed[at]))),
+            SWITCH => SumTree::new(self.expressed.iter().map(weight)),
+            _ => SumTree::new(self.owners.iter().map(weight)),
+        }
     }
 }
 
@@ -157,36 +204,73 @@ pub fn mutate(
     palette: &Palette<'_>,
     draws: &mut Draws,
 ) -> Vec<Edit> {
-    let drawn = |list: &[Candidate], amount: Amount, immune: &[Place], draws: &mut Draws| {
-        let weights: Vec<f64> = list
-            .iter()
-            .map(|candidate| {
-                if immune.iter().any(|&newborn| candidate.place.contains(newborn)) {
-                    return 0.0;
-                }
-                let level = candidate.place.level;
-                weight(strategy.weighting, palette.weights, level, candidates.deepest, candidate.force)
-            })
-            .collect();
-        draw_without_replacement(&weights, amount.of(list.len()), draws)
-    };
     let mut edits = Vec::new();
-    let mut divided = Vec::new();
-    for at in drawn(&candidates.divisible, strategy.insertions, &[], draws) {
-        let cell = candidates.divisible[at].place;
-        edits.push(Edit::Subdivide { cell, children: std::array::from_fn(|_| palette.draw(draws)) });
-        divided.push(cell);
-    }
-    for at in drawn(&candidates.expressed, strategy.switches, &divided, draws) {
-        let Candidate { place: cell, content: from, .. } = candidates.expressed[at];
-        let to = palette.draw(draws);
-        if from != to {
-            edits.push(Edit::Retype { cell, from, to });
+    Mutator::default().mutate(candidates, strategy, palette, draws, &mut edits);
+    edits
+}
+
+/// Draws one mutant after the other without asking for new memory, once it has drawn one of the size.
+#[derive(Clone, Debug, Default)]
+pub struct Mutator {
+    sums: SumTree,
+    drawn: Vec<usize>,
+    /// Cells that are divided, as indices of the expressed ones.
+    divided: Vec<usize>,
+}
+
+impl Mutator {
+    /// Appends the edits of one mutant, as the function [`mutate`] gives them.
+    pub fn mutate(
+        &mut self,
+        candidates: &Candidates,
+        strategy: &Strategy,
+        palette: &Palette<'_>,
+        draws: &mut Draws,
+        edits: &mut Vec<Edit>,
+    ) {
+        let Candidates { divisible, expressed, owners, .. } = candidates;
+        self.divided.clear();
+        self.weigh(candidates, INSERT, strategy, palette);
+        self.draw(strategy.insertions.of(divisible.len()), draws);
+        for &at in &self.drawn {
+            let cell = expressed[divisible[at]].place;
+            edits.push(Edit::Subdivide { cell, children: std::array::from_fn(|_| palette.draw(draws)) });
+            self.divided.push(divisible[at]);
+        }
+        self.weigh(candidates, SWITCH, strategy, palette);
+        self.divided.iter().for_each(|&newborn| self.sums.clear(newborn));
+        self.draw(strategy.switches.of(expressed.len()), draws);
+        for &at in &self.drawn {
+            let Candidate { place: cell, content: from, .. } = expressed[at];
+            let to = palette.draw(draws);
+            if from != to {
+                edits.push(Edit::Retype { cell, from, to });
+            }
+        }
+        self.weigh(candidates, TOGGLE, strategy, palette);
+        for &newborn in &self.divided {
+            let mut owner = expressed[newborn].above;
+            while owner != NONE {
+                self.sums.clear(owner);
+                owner = owners[owner].above;
+            }
+        }
+        self.draw(strategy.toggles.of(owners.len()), draws);
+        for &at in &self.drawn {
+            let Candidate { place: cell, on, .. } = owners[at];
+            edits.push(Edit::Toggle { cell, on: !on });
         }
     }
-    for at in drawn(&candidates.owners, strategy.toggles, &divided, draws) {
-        let Candidate { place: cell, on, .. } = candidates.owners[at];
-        edits.push(Edit::Toggle { cell, on: !on });
+
+    fn weigh(&mut self, candidates: &Candidates, step: usize, strategy: &Strategy, palette: &Palette<'_>) {
+        match candidates.weighed_by(strategy.weighting, palette.weights) {
+            Some(weighed) => self.sums.clone_from(&weighed.steps[step]),
+            None => self.sums = candidates.sums(step, strategy.weighting, palette.weights),
+        }
     }
-    edits
+
+    fn draw(&mut self, count: usize, draws: &mut Draws) {
+        self.drawn.clear();
+        self.sums.draw(count, draws, &mut self.drawn);
+    }
 }

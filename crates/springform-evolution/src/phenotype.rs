@@ -1,14 +1,15 @@
 //! From genotype to measured phenotype: expression, network, equilibrium, measures in one call.
 
-use springform_mechanics::assembly::{SpringLaw, assemble};
+use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status};
+use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
 use springform_mechanics::network::Network;
+use springform_mechanics::stage::Stage;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
-use springform_topology::expression::{Expression, ExpressionError, express};
+use springform_topology::expression::{Expression, ExpressionError, Growth, express};
 use springform_topology::filters::{Method, recursive};
 use springform_topology::forest::Forest;
 use thiserror::Error;
@@ -96,6 +97,55 @@ impl Setting {
         }
         let measures = Measures::new(&expression, &network, &equilibrium.positions, &equilibrium.forces);
         Ok(Phenotype { expression, network, equilibrium, measures })
+    }
+}
+
+/// Measures one forest after the other without asking for new memory, once it has seen one of the size; what it gives
+/// depends on nothing that it measured before.
+#[derive(Clone, Default)]
+pub struct Evaluator {
+    growth: Growth,
+    network: Network<'static>,
+    solver: Solver,
+    equilibrium: Equilibrium,
+}
+
+/// What an individual is judged by.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Evaluation {
+    /// Measures at equilibrium.
+    pub measures: Measures,
+    /// Residual of the equilibrium over the mean force.
+    pub residual: f64,
+}
+
+impl Evaluator {
+    /// Grows, solves and measures a closed forest, with the outcome of [`Setting::evaluate`]; tells `observe` when a
+    /// stage ends.
+    ///
+    /// # Errors
+    /// The filters leave no net, or the net no equilibrium.
+    pub fn evaluate(
+        &mut self,
+        setting: &Setting,
+        forest: &Forest,
+        observe: &mut impl FnMut(Stage),
+    ) -> Result<Evaluation, PhenotypeError> {
+        let Setting { mesh, catalogue, method, anchors, embedding, law, solver } = setting;
+        let grown = || observe(Stage::Nodes);
+        let expression = self.growth.express_observed(mesh, forest, catalogue, *method, anchors, grown)?;
+        observe(Stage::Filter);
+        assemble_into(expression, embedding, *law, &mut self.network);
+        observe(Stage::Nodes);
+        self.solver.solve_into(&self.network, solver, &mut self.equilibrium);
+        observe(Stage::Solve);
+        let Equilibrium { positions, forces, residual, status, .. } = &self.equilibrium;
+        if *status != Status::Converged {
+            return Err(PhenotypeError::Equilibrium(*status, *residual));
+        }
+        let measures = Measures::new(expression, &self.network, positions, forces);
+        observe(Stage::Measure);
+        Ok(Evaluation { measures, residual: *residual })
     }
 }
 

@@ -75,31 +75,50 @@ pub fn weight(
 ///
 /// Items of weight zero are never drawn.
 pub fn draw_without_replacement(weights: &[f64], count: usize, draws: &mut Draws) -> Vec<usize> {
-    let mut sums = SumTree::new(weights);
     let mut drawn = Vec::with_capacity(count.min(weights.len()));
-    while drawn.len() < count && sums.total() > 0.0 {
-        let item = sums.find(draws.unit() * sums.total());
-        sums.clear(item);
-        drawn.push(item);
-    }
+    SumTree::new(weights.iter().copied()).draw(count, draws, &mut drawn);
     drawn
 }
 
 /// Partial sums of weights in a binary tree, so that taking one out leaves no rounding behind.
-struct SumTree {
+#[derive(Debug, Default)]
+pub(crate) struct SumTree {
     leaves: usize,
     sums: Vec<f64>,
 }
 
+impl Clone for SumTree {
+    fn clone(&self) -> SumTree {
+        SumTree { leaves: self.leaves, sums: self.sums.clone() }
+    }
+
+    fn clone_from(&mut self, source: &SumTree) {
+        self.leaves = source.leaves;
+        self.sums.clone_from(&source.sums);
+    }
+}
+
 impl SumTree {
-    fn new(weights: &[f64]) -> SumTree {
+    pub fn new(weights: impl ExactSizeIterator<Item = f64>) -> SumTree {
         let leaves = weights.len().next_power_of_two();
         let mut sums = vec![0.0; 2 * leaves];
-        sums[leaves..leaves + weights.len()].copy_from_slice(weights);
+        sums[leaves..].iter_mut().zip(weights).for_each(|(sum, weight)| *sum = weight);
         for at in (1..leaves).rev() {
             sums[at] = sums[2 * at] + sums[2 * at + 1];
         }
         SumTree { leaves, sums }
+    }
+
+    /// Appends up to `count` items to those drawn, and takes them out.
+    pub fn draw(&mut self, count: usize, draws: &mut Draws, drawn: &mut Vec<usize>) {
+        for _ in 0..count {
+            if self.total() <= 0.0 {
+                return;
+            }
+            let item = self.find(draws.unit() * self.total());
+            self.clear(item);
+            drawn.push(item);
+        }
     }
 
     fn total(&self) -> f64 {
@@ -120,7 +139,8 @@ impl SumTree {
         at - self.leaves
     }
 
-    fn clear(&mut self, item: usize) {
+    /// Takes an item out: the sums are then those of a tree without it.
+    pub fn clear(&mut self, item: usize) {
         let mut at = self.leaves + item;
         self.sums[at] = 0.0;
         while at > 1 {

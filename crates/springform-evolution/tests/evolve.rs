@@ -4,21 +4,17 @@ mod runs;
 
 use proptest::prelude::*;
 use runs::common::{Dice, cases, dice};
-use runs::{Start, starts};
+use runs::{Start, cylinder, starts};
 use springform_evolution::ending::{Ending, Reason};
 use springform_evolution::evolve::{Evolution, Generation, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy as Rates};
-use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_mechanics::assembly::{SpringLaw, embed};
-use springform_mechanics::equilibrium::Settings;
-use springform_topology::base_mesh::BaseMesh;
+use springform_evolution::workspace::Workspace;
+use springform_mechanics::stage::Stage;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
 use springform_topology::edit::Edit;
-use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
-use springform_topology::framework::{Framework, Grid, Part, Shape, Side};
 use springform_topology::notation::{read_top_cell, write_cell};
 
 /// Generations of a random run.
@@ -113,6 +109,26 @@ proptest! {
         }
     }
 
+    /// Individuals made in one memory after those of other runs are those made in fresh memory, and stages end in
+    /// order.
+    #[test]
+    fn memory_that_is_used_again_changes_nothing(runs in prop::collection::vec((starts(8), dice(40)), 1..4)) {
+        let mut workspace = Workspace::default();
+        for (start, dice) in &runs {
+            let (parameters, _, evolution) = random_run(start, &mut dice.clone(), 1);
+            for index in 0..parameters.population {
+                let mut stages = Vec::new();
+                let mut observe = |stage| stages.push(stage);
+                let again = evolution.individual_in(1, index, &mut workspace, &mut observe);
+                prop_assert_eq!(&again, &evolution.individual(1, index));
+                if again.measures.is_some() {
+                    prop_assert_eq!(stages.first(), Some(&Stage::Mutate));
+                    prop_assert_eq!(stages.last(), Some(&Stage::Measure));
+                }
+            }
+        }
+    }
+
     /// The winner is the first of the fittest in its band, and becomes parent; without one the parent stays.
     #[test]
     fn the_fittest_becomes_parent(start in starts(8), mut dice in dice(40)) {
@@ -181,31 +197,6 @@ fn begin_again(evolution: &Evolution, parameters: &Parameters) -> Evolution {
     let setting = evolution.setting().clone();
     Evolution::new(setting, parameters.clone(), parent.forest.clone(), parent.strategy, picked_up, 2)
         .expect("the parent gives a net")
-}
-
-/// A dia-grid cylinder with four anchors a ring, pulled outward.
-fn cylinder() -> Start {
-    let part = Part { name: "c".to_owned(), shape: Shape::Cylinder, around: 8, along: 4 };
-    let framework = Framework { grid: Grid::Dia, parts: vec![part], joins: vec![] };
-    let mesh = BaseMesh::from_framework(&framework).expect("a valid cylinder");
-    let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
-    let rings = [(Side::Start, 0.0), (Side::End, 3.0)];
-    let anchor = |side: Side, k: usize| mesh.border_vertex("c", side, 2 * k).expect("a vertex of the ring");
-    let anchors: Vec<u32> =
-        rings.iter().flat_map(|&(side, _)| (0..4).map(move |k| anchor(side, k))).collect();
-    let target = |height: f64| corners.map(|[x, y]| [x, y, height]);
-    let positions = rings.iter().flat_map(|&(_, height)| target(height)).collect();
-    let setting = Setting {
-        embedding: embed(&mesh, &anchors, positions),
-        catalogue: Catalogue::default(),
-        method: Method::Dynamic,
-        law: SpringLaw::default(),
-        solver: Settings::default(),
-        anchors,
-        mesh,
-    };
-    let forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
-    Start { setting, forest }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use springform_topology::expression::{Expression, express};
 use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
 use springform_topology::node_key::NodePlace;
+use std::borrow::Cow;
 
 /// Stiffness of the springs of a net by where they lie; all rest lengths are zero.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -28,25 +29,45 @@ impl Default for SpringLaw {
 
 /// The network of an expression: anchors are fixed at their positions, free nodes start at their drawn ones.
 pub fn assemble(expression: &Expression, embedding: &Embedding, law: SpringLaw) -> Network<'static> {
-    let mut positions: Vec<Vector> =
-        expression.nodes.iter().map(|&node| embedding.drawn_position(node)).collect();
-    let mut fixed = vec![[false; 3]; positions.len()];
+    let mut network = Network::default();
+    assemble_into(expression, embedding, law, &mut network);
+    network
+}
+
+/// Writes the network that [`assemble`] gives into one that it gave before, or an empty one, in the same memory.
+pub fn assemble_into(
+    expression: &Expression,
+    embedding: &Embedding,
+    law: SpringLaw,
+    network: &mut Network<'static>,
+) {
+    let (nodes, springs) = (expression.nodes.len(), &expression.springs);
+    let positions = network.positions.to_mut();
+    embedding.draw_positions(&expression.nodes, positions);
+    let fixed = refilled(&mut network.fixed, nodes, [false; 3]);
     for (&node, &position) in expression.anchors.iter().zip(&embedding.anchor_positions) {
         positions[node as usize] = position;
         fixed[node as usize] = [true; 3];
     }
+    let pairs = network.springs.to_mut();
+    pairs.clear();
+    pairs.extend(springs.iter().map(|spring| spring.nodes));
     let factor = |ring: bool| if ring { law.ring_factor } else { 1.0 };
-    Network {
-        springs: expression.springs.iter().map(|spring| spring.nodes).collect(),
-        stiffness: expression.springs.iter().map(|spring| law.stiffness * factor(spring.ring)).collect(),
-        rest_length: vec![0.0; expression.springs.len()].into(),
-        force: vec![0.0; expression.springs.len()].into(),
-        sense: vec![Sense::Both; expression.springs.len()].into(),
-        loads: vec![[0.0; 3]; positions.len()].into(),
-        positions: positions.into(),
-        fixed: fixed.into(),
-        ..Network::default()
-    }
+    let stiffness = network.stiffness.to_mut();
+    stiffness.clear();
+    stiffness.extend(springs.iter().map(|spring| law.stiffness * factor(spring.ring)));
+    refilled(&mut network.rest_length, springs.len(), 0.0);
+    refilled(&mut network.force, springs.len(), 0.0);
+    refilled(&mut network.sense, springs.len(), Sense::Both);
+    refilled(&mut network.loads, nodes, [0.0; 3]);
+}
+
+/// An array of so many equal values, in the memory that it has.
+fn refilled<'a, T: Copy>(array: &'a mut Cow<'static, [T]>, count: usize, value: T) -> &'a mut [T] {
+    let array = array.to_mut();
+    array.clear();
+    array.resize(count, value);
+    array
 }
 
 /// An embedding whose base vertices are drawn at the equilibrium of the base mesh, each cell a plain quad of unit

@@ -35,6 +35,12 @@ impl Embedding {
         &self.base_positions
     }
 
+    /// Writes the drawn positions of nodes [m].
+    pub(crate) fn draw_positions(&self, nodes: &[NodeKey], positions: &mut Vec<Vector>) {
+        positions.clear();
+        positions.extend(nodes.iter().map(|&node| self.drawn_position(node)));
+    }
+
     /// Drawn position of a node [m]: bilinear between the corners of its face.
     pub fn drawn_position(&self, node: NodeKey) -> Vector {
         let base = |vertex: u32| self.base_positions[vertex as usize];

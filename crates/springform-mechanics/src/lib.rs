@@ -17,4 +17,5 @@ pub mod measures;
 pub mod network;
 pub mod rod;
 pub mod sparse;
+pub mod stage;
 pub mod vector;

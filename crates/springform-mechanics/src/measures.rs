@@ -69,13 +69,20 @@ impl Measures {
         positions: &[Vector],
         forces: &[f64],
     ) -> Measures {
-        let lengths = network.lengths(positions);
         let count = forces.len().max(1) as f64;
-        let force_min = forces.iter().copied().fold(f64::INFINITY, f64::min);
-        let force_max = forces.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let force_mean = forces.iter().sum::<f64>() / count;
+        let (mut force_min, mut force_max, mut force_sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        let (mut total_length, mut load_path, mut shortest_spring) = (0.0, 0.0, f64::INFINITY);
+        for (&force, &[a, b]) in forces.iter().zip(network.springs.iter()) {
+            let length = length(subtract(positions[b as usize], positions[a as usize]));
+            force_min = f64::min(force_min, force);
+            force_max = f64::max(force_max, force);
+            force_sum += force;
+            total_length += length;
+            load_path += force * length;
+            shortest_spring = f64::min(shortest_spring, length);
+        }
+        let force_mean = force_sum / count;
         let variance = forces.iter().map(|force| (force - force_mean).powi(2)).sum::<f64>() / count;
-        let total_length = lengths.iter().sum();
         let area = area(expression, positions);
         Measures {
             springs: forces.len() as u32,
@@ -89,9 +96,9 @@ impl Measures {
             force_variation: variance.sqrt() / force_mean,
             force_range: force_max - force_min,
             total_length,
-            load_path: forces.iter().zip(&lengths).map(|(force, length)| force * length).sum(),
+            load_path,
             area,
-            shortest_spring: lengths.iter().copied().fold(f64::INFINITY, f64::min),
+            shortest_spring,
             length_per_area: total_length / area,
         }
     }
@@ -112,6 +119,8 @@ pub fn spring_utilization(measures: &Measures, reference: (Option<f64>, u32)) ->
 }
 
 /// Inner force of every expressed cell: the sum of the forces of its springs [N] (the paper §3.5).
+///
+/// The expression must have owners.
 pub fn inner_forces(expression: &Expression, forces: &[f64]) -> Vec<f64> {
     let sum = |cell| expression.cell_springs.of(cell).iter().map(|&spring| forces[spring as usize]).sum();
     (0..expression.cells.len() as u32).map(sum).collect()
@@ -157,16 +166,23 @@ fn border_nodes(mesh: &BaseMesh, expression: &Expression, border: &Border) -> Ve
 
 fn area(expression: &Expression, positions: &[Vector]) -> f64 {
     let mut total = 0.0;
-    for (cell, expressed) in expression.cells.iter().enumerate() {
-        let boundary = expression.cell_boundaries.of(cell as u32);
+    let boundaries = expression.cell_boundaries.starts().windows(2);
+    for (expressed, ends) in expression.cells.iter().zip(boundaries) {
+        let boundary = &expression.cell_boundaries.items()[ends[0] as usize..ends[1] as usize];
         if expressed.content.kind == NULL || boundary.len() < 3 {
             continue;
         }
         let at = |node: &u32| positions[*node as usize];
         let middle = mean(boundary.iter().map(at));
-        for (here, next) in boundary.iter().zip(boundary.iter().cycle().skip(1)) {
-            total += 0.5 * length(cross(subtract(at(here), middle), subtract(at(next), middle)));
+        let mut add = |here: Vector, next: Vector| total += 0.5 * length(cross(here, next));
+        let first = subtract(at(&boundary[0]), middle);
+        let mut here = first;
+        for node in &boundary[1..] {
+            let next = subtract(at(node), middle);
+            add(here, next);
+            here = next;
         }
+        add(here, first);
     }
     total
 }

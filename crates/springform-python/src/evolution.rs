@@ -13,7 +13,10 @@ use springform_evolution::fitness::{Criterion, Fitness, Standing, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_evolution::stress_seeking;
+use springform_evolution::workspace::Workspace;
 use springform_mechanics::measures::Measures;
+use springform_mechanics::stage::STAGES;
+use std::time::Instant;
 
 /// (insertions, switches, toggles) as (is a share, number) each, and the weighting.
 type StrategyTuple = ((bool, f64), (bool, f64), (bool, f64), String);
@@ -157,6 +160,22 @@ impl Evolution {
         self.lines(&individual.edits)
     }
 
+    /// Makes the first individuals of the next generation one after the other, and again round after round; the seconds
+    /// that each stage took, by name, an array with a row a round. The run stays where it is.
+    fn stages<'py>(&self, py: Python<'py>, count: u32, rounds: usize) -> PyResult<Bound<'py, PyDict>> {
+        let spent = py.detach(|| {
+            let mut workspace = Workspace::default();
+            let mut round = || stage_seconds(&self.evolution, count, &mut workspace);
+            (0..rounds).map(|_| round()).collect::<Vec<_>>()
+        });
+        let result = PyDict::new(py);
+        for (stage, name) in STAGES {
+            let seconds = spent.iter().map(|round| round[stage as usize]);
+            result.set_item(name, PyArray1::from_iter(py, seconds))?;
+        }
+        Ok(result)
+    }
+
     /// The ending condition that holds now, by name.
     fn reached(
         &self,
@@ -199,6 +218,24 @@ impl Evolution {
         let catalogue = &self.evolution.setting().catalogue;
         edits.iter().map(|edit| edit.write(catalogue)).collect()
     }
+}
+
+/// Seconds that each stage of the first individuals of the next generation takes.
+fn stage_seconds(
+    evolution: &evolve::Evolution,
+    count: u32,
+    workspace: &mut Workspace,
+) -> [f64; STAGES.len()] {
+    let mut spent = [0.0; STAGES.len()];
+    let mut last = Instant::now();
+    for index in 0..count {
+        evolution.individual_in(evolution.generation() + 1, index, workspace, &mut |stage| {
+            let now = Instant::now();
+            spent[stage as usize] += (now - last).as_secs_f64();
+            last = now;
+        });
+    }
+    spent
 }
 
 /// One array a column, one row an individual; undefined numbers are NaN.

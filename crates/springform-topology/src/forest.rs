@@ -12,6 +12,7 @@ use crate::address::Place;
 use crate::cell_type::{CellTypeId, QUAD};
 use crate::node_key::NodeKey;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Handle of a cell, valid until the cell is removed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -70,12 +71,35 @@ struct Cell {
 }
 
 /// A forest of quadtrees with the designer's overrides.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Forest {
     top: u32,
     cells: Vec<Cell>,
     free_blocks: Vec<u32>,
-    overrides: BTreeMap<NodePair, Override>,
+    /// Shared by copies until one of them changes it.
+    overrides: Arc<BTreeMap<NodePair, Override>>,
+}
+
+impl Clone for Forest {
+    fn clone(&self) -> Forest {
+        Forest {
+            top: self.top,
+            cells: self.cells.clone(),
+            free_blocks: self.free_blocks.clone(),
+            overrides: Arc::clone(&self.overrides),
+        }
+    }
+
+    /// Copies into the memory of a forest that is no longer needed.
+    fn clone_from(&mut self, source: &Forest) {
+        self.top = source.top;
+        self.cells.clone_from(&source.cells);
+        self.free_blocks.clone_from(&source.free_blocks);
+        // Copies of one forest stay out of each other's way in the count of its owners.
+        if !Arc::ptr_eq(&self.overrides, &source.overrides) {
+            self.overrides = Arc::clone(&source.overrides);
+        }
+    }
 }
 
 impl Forest {
@@ -86,7 +110,7 @@ impl Forest {
             top: faces,
             cells: vec![cell; faces as usize],
             free_blocks: Vec::new(),
-            overrides: BTreeMap::new(),
+            overrides: Arc::default(),
         }
     }
 
@@ -166,26 +190,36 @@ impl Forest {
 
     /// Visits every expressed cell in order of face and child.
     pub fn visit_expressed(&self, mut visit: impl FnMut(CellIndex, Place)) {
-        self.visit_reachable(|cell, place| {
-            if self.expressed_children(cell).is_none() {
-                visit(cell, place);
+        for face in 0..self.top {
+            self.visit_expressed_under(CellIndex(face), Place::top(face), &mut visit);
+        }
+    }
+
+    /// Visits the expressed cells under a reachable cell, or the cell itself, in the same order.
+    pub(crate) fn visit_expressed_under(
+        &self,
+        cell: CellIndex,
+        place: Place,
+        visit: &mut impl FnMut(CellIndex, Place),
+    ) {
+        match self.expressed_children(cell) {
+            None => visit(cell, place),
+            Some(children) => {
+                for (k, child) in children.into_iter().enumerate() {
+                    self.visit_expressed_under(child, place.child(k as u8), visit);
+                }
             }
-        });
+        }
     }
 
     /// A number that equal forests share and different ones hardly do (FNV-1a over the cells in order).
     pub fn fingerprint(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let mut absorb = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        let mut open: Vec<CellIndex> = (0..self.top).rev().map(CellIndex).collect();
-        while let Some(cell) = open.pop() {
-            let Content { kind, turn } = self.content(cell);
-            let children = self.children(cell);
-            absorb(kind.0);
-            absorb(turn | u8::from(self.is_on(cell)) << 2 | u8::from(children.is_some()) << 3);
-            open.extend(children.into_iter().flatten().rev());
+        for face in 0..self.top {
+            self.absorb_under(CellIndex(face), &mut absorb);
         }
-        for (pair, what) in &self.overrides {
+        for (pair, what) in self.overrides() {
             for byte in pair.keys().into_iter().flat_map(|key| key.to_bits().to_le_bytes()) {
                 absorb(byte);
             }
@@ -194,15 +228,26 @@ impl Forest {
         hash
     }
 
+    fn absorb_under(&self, cell: CellIndex, absorb: &mut impl FnMut(u8)) {
+        let Content { kind, turn } = self.content(cell);
+        let children = self.children(cell);
+        absorb(kind.0);
+        absorb(turn | u8::from(self.is_on(cell)) << 2 | u8::from(children.is_some()) << 3);
+        for child in children.into_iter().flatten() {
+            self.absorb_under(child, absorb);
+        }
+    }
+
     /// The designer's overrides, in order of node keys.
     pub fn overrides(&self) -> &BTreeMap<NodePair, Override> {
         &self.overrides
     }
 
     pub(crate) fn set_override(&mut self, pair: NodePair, value: Option<Override>) {
+        let overrides = Arc::make_mut(&mut self.overrides);
         match value {
-            Some(value) => self.overrides.insert(pair, value),
-            None => self.overrides.remove(&pair),
+            Some(value) => overrides.insert(pair, value),
+            None => overrides.remove(&pair),
         };
     }
 

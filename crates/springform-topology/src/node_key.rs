@@ -62,11 +62,11 @@ impl NodeKey {
         [NodeKey::edge(edge, 1), NodeKey::edge(edge, UNITS - 1)]
     }
 
-    fn edge(edge: u32, parameter: u32) -> NodeKey {
+    pub(crate) fn edge(edge: u32, parameter: u32) -> NodeKey {
         NodeKey(1 << TAG_SHIFT | u64::from(edge) << COORDINATE_BITS | u64::from(parameter))
     }
 
-    fn face(face: u32, i: u32, j: u32) -> NodeKey {
+    pub(crate) fn face(face: u32, i: u32, j: u32) -> NodeKey {
         let face = u64::from(face) << (2 * COORDINATE_BITS);
         NodeKey(2 << TAG_SHIFT | face | u64::from(i) << COORDINATE_BITS | u64::from(j))
     }
@@ -87,6 +87,11 @@ impl NodeKey {
         };
         let under = mesh.side_edge(face, side);
         NodeKey::edge(under.edge, if under.reversed { UNITS - along } else { along })
+    }
+
+    /// The face of a point inside a face, in its place among the bits.
+    pub(crate) fn face_bits(self) -> u64 {
+        self.0 >> (2 * COORDINATE_BITS)
     }
 
     /// The key as a number.

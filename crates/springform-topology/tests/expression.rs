@@ -3,13 +3,13 @@
 mod common;
 
 use common::oracle::{Flow, SlowNet, slow_net};
-use common::{Design, cases, grown_designs, leaves};
+use common::{Design, cases, edit_dice, grown_designs, leaves};
 use proptest::prelude::*;
 use springform_topology::address::Place;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, CellTypeId, DYNAMIC, NULL};
 use springform_topology::edit::Edit;
-use springform_topology::expression::{Expression, ExpressionError, express};
+use springform_topology::expression::{Expression, ExpressionError, Growth, Kinship, express};
 use springform_topology::filters::Method;
 use springform_topology::filters::continuity::carrying;
 use springform_topology::forest::{Content, Forest, NodePair, Override};
@@ -157,6 +157,54 @@ proptest! {
         prop_assert!(kept.into_iter().all(|kept| kept));
         let flow = Flow::new(expression.nodes.len(), &springs, &expression.anchors);
         prop_assert!(springs.iter().all(|&ends| flow.carries(ends)));
+    }
+
+    /// Expressed in one memory after whatever else, a forest gives what it gives in fresh memory, owners too, and an
+    /// error leaves nothing behind.
+    #[test]
+    fn memory_that_is_used_again_changes_nothing(designs in prop::collection::vec(grown_designs(24), 1..5)) {
+        let mut growth = Growth::default();
+        for (at, design) in designs.iter().chain(&designs).enumerate() {
+            let Design { mesh, forest, catalogue, method, anchors } = design;
+            let fresh = expressed(design);
+            let again = growth.express(mesh, forest, catalogue, *method, anchors).cloned();
+            let unowned = fresh.clone().map(|net| Expression {
+                cell_springs: Default::default(),
+                spring_cells: Default::default(),
+                ..net
+            });
+            prop_assert_eq!(again, unowned);
+            if at % 2 == 0 && fresh.is_ok() {
+                growth.add_owners();
+                prop_assert_eq!(Ok(growth.expression().clone()), fresh);
+            }
+        }
+    }
+
+    /// Nodes and springs of a mutant are found again in its parent exactly if the parent has them.
+    #[test]
+    fn kinship_finds_what_both_have(design in grown_designs(16), edits in edit_dice(6)) {
+        let mut mutant = design.clone();
+        mutant.grow(edits);
+        let (Ok(parent), Ok(child)) = (expressed(&design), expressed(&mutant)) else { return Ok(()) };
+        let mut kinship = Kinship::default();
+        kinship.find(&parent, &child);
+        kinship.find(&child, &parent);
+        let found = |number: u32| (number != Kinship::NONE).then_some(number as usize);
+        prop_assert_eq!(kinship.nodes.len(), child.nodes.len());
+        for (key, &node) in child.nodes.iter().zip(&kinship.nodes) {
+            prop_assert_eq!(found(node), parent.nodes.binary_search(key).ok());
+        }
+        let named = |net: &Expression, at: usize| {
+            let spring = net.springs[at];
+            (spring.nodes.map(|node| net.nodes[node as usize]), spring.ring)
+        };
+        let all: Vec<_> = (0..parent.springs.len()).map(|at| named(&parent, at)).collect();
+        prop_assert_eq!(kinship.springs.len(), child.springs.len());
+        for (at, &spring) in kinship.springs.iter().enumerate() {
+            let before = all.iter().position(|spring| *spring == named(&child, at));
+            prop_assert_eq!(found(spring), before);
+        }
     }
 
     /// Where cells stand in memory does not matter.

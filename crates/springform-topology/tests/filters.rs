@@ -10,7 +10,7 @@ use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, Point};
 use springform_topology::edit::Edit;
 use springform_topology::filters::Method;
-use springform_topology::filters::recursive::{Support, close, support_springs};
+use springform_topology::filters::recursive::{Closure, Support, close, support_springs};
 use springform_topology::forest::{Content, Forest};
 use springform_topology::notation::{read_top_cell, write_cell};
 use springform_topology::sides::expressed_neighbours;
@@ -197,6 +197,26 @@ proptest! {
         prop_assert_eq!(found, neighbours(&design.mesh, &design.forest));
     }
 
+    /// Closing after edits of a closed forest, from where they were, does what closing all of it does, edit by
+    /// edit, whatever the same memory closed before.
+    #[test]
+    fn closing_after_edits_is_closing(
+        designs in prop::collection::vec((unbalanced(30), edit_dice(10)), 1..4)
+    ) {
+        let mut closure = Closure::default();
+        for (mut design, dice) in designs {
+            design.close();
+            let edits = design.grow(dice);
+            let mut after = edits.clone();
+            let mut forest = design.forest.clone();
+            closure.close_after(&design.mesh, &mut forest, &mut after).expect("a valid forest closes");
+            let whole = design.close();
+            prop_assert_eq!(&after[..edits.len()], &edits[..]);
+            prop_assert_eq!(&after[edits.len()..], &whole[..]);
+            prop_assert_eq!(&forest, &design.forest);
+        }
+    }
+
     /// Stored cells survive every closure: nothing is merged.
     #[test]
     fn closing_loses_nothing(design in grown_designs(30)) {
@@ -270,7 +290,7 @@ fn support_springs_of_all_sixteen_patterns() {
     };
     for pattern in 0..16u8 {
         let hanging = std::array::from_fn(|side| pattern >> side & 1 == 1);
-        let found = support_springs(hanging).into_iter().map(|ends| ends.map(point)).collect();
+        let found = support_springs(hanging).map(|ends| ends.map(point)).collect();
         assert_eq!(sorted(found), sorted(supports(hanging)), "hanging {hanging:?}");
     }
 }

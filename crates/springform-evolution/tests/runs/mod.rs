@@ -16,12 +16,14 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{WEIGHTINGS, WeightingParameters};
-use springform_mechanics::assembly::SpringLaw;
+use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::Measures;
-use springform_topology::cell_type::CellTypeId;
+use springform_topology::base_mesh::BaseMesh;
+use springform_topology::cell_type::{Catalogue, CellTypeId};
 use springform_topology::filters::Method;
-use springform_topology::forest::Forest;
+use springform_topology::forest::{Content, Forest};
+use springform_topology::framework::{Framework, Grid, Part, Shape, Side};
 use std::fmt;
 
 /// A design that gives a net, as evolution sees it.
@@ -114,4 +116,29 @@ pub fn standing(springs: u32, force_differential: Option<f64>, shortest_spring: 
         shortest_spring,
         length_per_area: 4.0,
     }
+}
+
+/// A dia-grid cylinder with four anchors a ring, pulled outward.
+pub fn cylinder() -> Start {
+    let part = Part { name: "c".to_owned(), shape: Shape::Cylinder, around: 8, along: 4 };
+    let framework = Framework { grid: Grid::Dia, parts: vec![part], joins: vec![] };
+    let mesh = BaseMesh::from_framework(&framework).expect("a valid cylinder");
+    let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let rings = [(Side::Start, 0.0), (Side::End, 3.0)];
+    let anchor = |side: Side, k: usize| mesh.border_vertex("c", side, 2 * k).expect("a vertex of the ring");
+    let anchors: Vec<u32> =
+        rings.iter().flat_map(|&(side, _)| (0..4).map(move |k| anchor(side, k))).collect();
+    let target = |height: f64| corners.map(|[x, y]| [x, y, height]);
+    let positions = rings.iter().flat_map(|&(_, height)| target(height)).collect();
+    let setting = Setting {
+        embedding: embed(&mesh, &anchors, positions),
+        catalogue: Catalogue::default(),
+        method: Method::Dynamic,
+        law: SpringLaw::default(),
+        solver: Settings::default(),
+        anchors,
+        mesh,
+    };
+    let forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
+    Start { setting, forest }
 }

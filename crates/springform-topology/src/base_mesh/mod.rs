@@ -178,6 +178,16 @@ impl BaseMesh {
         self.face_sides[face as usize][usize::from(side)]
     }
 
+    /// The edges under the sides of a face.
+    pub(crate) fn side_edges(&self, face: u32) -> [SideEdge; 4] {
+        self.face_sides[face as usize]
+    }
+
+    /// Which edges are free, in order of edges.
+    pub(crate) fn free_edges(&self) -> impl Iterator<Item = bool> {
+        self.edge_faces.starts().windows(2).map(|ends| ends[1] - ends[0] == 1)
+    }
+
     /// All sides of faces that lie on an edge.
     pub fn faces_at_edge(&self, edge: u32) -> &[FaceSide] {
         self.edge_faces.of(edge)
@@ -224,25 +234,71 @@ pub struct Groups<T> {
     items: Vec<T>,
 }
 
+impl<T> Default for Groups<T> {
+    fn default() -> Self {
+        Groups { starts: vec![0], items: Vec::new() }
+    }
+}
+
 impl<T: Copy> Groups<T> {
     /// Groups pairs of (group, item); items keep their order within a group.
     pub fn collect(groups: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) -> Self {
-        let mut starts = vec![0u32; groups + 1];
-        for (group, _) in pairs.clone() {
-            starts[group as usize + 1] += 1;
+        let mut collected = Groups::default();
+        collected.regroup(groups, pairs);
+        collected
+    }
+
+    /// Takes all groups away and keeps their memory.
+    pub(crate) fn clear(&mut self) {
+        self.starts.truncate(1);
+        self.items.clear();
+    }
+
+    /// Adds a group of what `append` appends to all items; returns what it says and the group.
+    pub(crate) fn add<R>(&mut self, append: impl FnOnce(&mut Vec<T>) -> R) -> (R, &[T]) {
+        let first = self.items.len();
+        let said = append(&mut self.items);
+        self.starts.push(self.items.len() as u32);
+        (said, &self.items[first..])
+    }
+
+    /// Regroups pairs of (group, item) like [`Groups::collect`], in the same memory.
+    pub(crate) fn regroup(&mut self, groups: usize, pairs: impl Iterator<Item = (u32, T)> + Clone) {
+        self.starts.clear();
+        self.starts.resize(groups + 1, 0);
+        // Counted one group further on, a start becomes the end of its group while the group is filled.
+        self.items.clear();
+        for (group, item) in pairs.clone() {
+            // Every place gets some item before it gets its own.
+            self.items.push(item);
+            if let Some(count) = self.starts.get_mut(group as usize + 2) {
+                *count += 1;
+            }
         }
-        for group in 0..groups {
-            starts[group + 1] += starts[group];
+        for group in 2..=groups {
+            self.starts[group] += self.starts[group - 1];
         }
-        let mut next = starts.clone();
-        let mut order = vec![0u32; starts[groups] as usize];
-        let mut flat = Vec::with_capacity(order.len());
-        for (position, (group, item)) in pairs.enumerate() {
-            order[next[group as usize] as usize] = position as u32;
-            next[group as usize] += 1;
-            flat.push(item);
+        for (group, item) in pairs {
+            let end = &mut self.starts[group as usize + 1];
+            self.items[*end as usize] = item;
+            *end += 1;
         }
-        Groups { starts, items: order.into_iter().map(|position| flat[position as usize]).collect() }
+    }
+
+    /// Keeps the items that `map` keeps, in their order and groups.
+    pub(crate) fn filter_map(&mut self, map: impl Fn(T) -> Option<T>) {
+        let (mut read, mut written) = (0, 0);
+        for end in &mut self.starts[1..] {
+            for at in read..*end as usize {
+                if let Some(item) = map(self.items[at]) {
+                    self.items[written] = item;
+                    written += 1;
+                }
+            }
+            read = *end as usize;
+            *end = written as u32;
+        }
+        self.items.truncate(written);
     }
 
     /// The items of a group.
