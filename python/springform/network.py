@@ -15,12 +15,12 @@ from . import _core
 from .errors import InputError
 
 Floats = NDArray[np.float64]
-Solver = Literal["direct", "implicit-euler"]
+Solver = Literal["direct", "implicit-euler", "dynamic-relaxation"]
 
 TOLERANCE = 1e-9
 """Largest residual at a free node over the mean spring force at which a net counts as solved."""
 
-_ITERATIONS = {"direct": 200, "implicit-euler": 5000}
+_ITERATIONS = {"direct": 200, "implicit-euler": 5000, "dynamic-relaxation": 200_000}
 
 
 class Network:
@@ -129,11 +129,13 @@ def solve(
     """Solve a network; the interpreter lock is free meanwhile.
 
     "direct" factors the stiffness matrix (with rest lengths: Newton's method); "implicit-euler"
-    moves the net step by step, as the paper does (footnote 1). A net that finds no equilibrium is
-    no error: see `converged` and `reason`. Raises `InputError`: the network or solver is refused.
+    moves the net step by step, as the paper does (footnote 1), and "dynamic-relaxation" by explicit
+    steps with kinetic damping. A net that finds no equilibrium is no error: see `converged` and
+    `reason`. Raises `InputError`: the network or solver is refused.
     """
     if solver not in _ITERATIONS:
-        raise InputError(f"unknown solver '{solver}'; use direct or implicit-euler", key="solver")
+        known = ", ".join(_ITERATIONS)
+        raise InputError(f"unknown solver '{solver}'; use one of {known}", key="solver")
     _check("tolerance", tolerance)
     limit = _ITERATIONS[solver] if iterations is None else iterations
     if not 0 <= limit < 2**31:

@@ -5,6 +5,7 @@
 //! A solve returns its status; it never prints and never panics on a bad net.
 
 pub mod cholesky;
+pub mod dynamic_relaxation;
 pub mod implicit_euler;
 mod interior;
 mod linear;
