@@ -51,8 +51,10 @@ pub enum Method {
     Newton,
     /// Newton steps after an interior-point phase.
     Interior,
-    /// Time steps.
+    /// Implicit time steps.
     ImplicitEuler,
+    /// Explicit time steps.
+    DynamicRelaxation,
 }
 
 impl Method {
@@ -64,6 +66,7 @@ impl Method {
             Method::Newton => "newton",
             Method::Interior => "interior",
             Method::ImplicitEuler => "implicit-euler",
+            Method::DynamicRelaxation => "dynamic-relaxation",
         }
     }
 }
