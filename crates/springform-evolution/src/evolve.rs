@@ -6,6 +6,7 @@
 use crate::draws::Draws;
 use crate::ending::{Ending, Reason};
 use crate::fitness::{Criterion, Score, Standing};
+use crate::lineage::Lineage;
 use crate::mutation::{Candidates, Palette, Strategy};
 use crate::phenotype::{Evaluation, PhenotypeError, Setting};
 use crate::selection::{WEIGHTINGS, Weighting, WeightingParameters};
@@ -62,6 +63,7 @@ pub struct Parent {
     /// Spring utilization factor against the reference it was chosen by.
     pub suf: Option<f64>,
     candidates: Candidates,
+    lineage: Lineage,
 }
 
 /// One evaluated mutant.
@@ -127,7 +129,7 @@ impl Evolution {
         setting.close(&mut forest)?;
         let (generation, start, suf) =
             resumed.map_or((0, None, None), |(at, start, suf)| (at, Some(start), suf));
-        let parent = Parent::new(&setting, &parameters, forest, strategy, None, suf)?;
+        let parent = Parent::new(&setting, &parameters, forest, strategy, suf)?;
         let start = start.unwrap_or_else(|| Standing::from(&parent.measures));
         let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let threads = threads.expect("the operating system gives threads");
@@ -209,8 +211,8 @@ impl Evolution {
             let individual = &individuals[index];
             let mut forest = self.parent.forest.clone();
             Edit::apply_all(&individual.edits, &mut forest)?;
-            let Individual { strategy, measures, suf, .. } = *individual;
-            self.parent = Parent::new(&self.setting, &self.parameters, forest, strategy, measures, suf)?;
+            let Individual { strategy, suf, .. } = *individual;
+            self.parent = Parent::new(&self.setting, &self.parameters, forest, strategy, suf)?;
         }
         self.generation += 1;
         Ok(Generation { number: self.generation, individuals, winner })
@@ -244,7 +246,9 @@ impl Evolution {
         let Workspace { forest, evaluator, edits, .. } = workspace;
         let fingerprint = if grown.is_ok() { forest.fingerprint() } else { 0 };
         observe(Stage::Mutate);
-        let evaluation = grown.and_then(|()| evaluator.evaluate(&self.setting, forest, observe)).ok();
+        let evaluation = grown
+            .and_then(|()| evaluator.evaluate(&self.setting, forest, &self.parent.lineage, observe))
+            .ok();
         let judged = evaluation.map(|Evaluation { measures, residual }| {
             let criterion = &self.parameters.criterion;
             let parent = Standing::from(&self.parent.measures);
@@ -297,27 +301,21 @@ impl Evolution {
 }
 
 impl Parent {
-    /// `measures` are those of the forest, if it has been measured.
+    /// Measures a forest anew, whoever measured it before: what a parent is must not depend on its own parent.
     fn new(
         setting: &Setting,
         parameters: &Parameters,
         forest: Forest,
         strategy: Strategy,
-        measures: Option<Measures>,
         suf: Option<f64>,
     ) -> Result<Parent, PhenotypeError> {
         let weighs = |weighting| parameters.self_adapt || weighting == strategy.weighting;
-        let (measures, inner_forces) = match measures {
-            Some(measures) if !weighs(Weighting::Stress) => (measures, Vec::new()),
-            _ => {
-                let phenotype = setting.evaluate(&forest)?;
-                (phenotype.measures, phenotype.inner_forces())
-            }
-        };
+        let (phenotype, lineage) = setting.evaluate_with_lineage(&forest)?;
+        let inner_forces = if weighs(Weighting::Stress) { phenotype.inner_forces() } else { Vec::new() };
         let mut candidates = Candidates::new(&forest, &inner_forces);
         for (weighting, _) in WEIGHTINGS.into_iter().filter(|&(weighting, _)| weighs(weighting)) {
             candidates.weigh(weighting, &parameters.weights);
         }
-        Ok(Parent { forest, strategy, measures, suf, candidates })
+        Ok(Parent { forest, strategy, measures: phenotype.measures, suf, candidates, lineage })
     }
 }

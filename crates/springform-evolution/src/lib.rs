@@ -11,6 +11,7 @@ pub mod draws;
 pub mod ending;
 pub mod evolve;
 pub mod fitness;
+pub mod lineage;
 pub mod mutation;
 pub mod phenotype;
 pub mod selection;

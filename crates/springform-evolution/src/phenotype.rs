@@ -1,8 +1,9 @@
 //! From genotype to measured phenotype: expression, network, equilibrium, measures in one call.
 
+use crate::lineage::{Heir, Lineage};
 use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Solver, Status};
+use springform_mechanics::equilibrium::{Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
 use springform_mechanics::network::Network;
 use springform_mechanics::stage::Stage;
@@ -90,13 +91,23 @@ impl Setting {
     /// # Errors
     /// The filters leave no net, or the net no equilibrium.
     pub fn evaluate(&self, forest: &Forest) -> Result<Phenotype, PhenotypeError> {
+        self.evaluate_with_lineage(forest).map(|(phenotype, _)| phenotype)
+    }
+
+    /// The same, and the order of elimination that mutants inherit.
+    ///
+    /// # Errors
+    /// The filters leave no net, or the net no equilibrium.
+    pub fn evaluate_with_lineage(&self, forest: &Forest) -> Result<(Phenotype, Lineage), PhenotypeError> {
         let (expression, network) = self.grow(forest)?;
-        let equilibrium = equilibrium::solve(&network, &self.solver);
+        let mut solver = Solver::default();
+        let equilibrium = solver.solve(&network, &self.solver);
         if equilibrium.status != Status::Converged {
             return Err(PhenotypeError::Equilibrium(equilibrium.status, equilibrium.residual));
         }
         let measures = Measures::new(&expression, &network, &equilibrium.positions, &equilibrium.forces);
-        Ok(Phenotype { expression, network, equilibrium, measures })
+        let lineage = Lineage { nodes: expression.nodes.clone(), order: solver.order().collect() };
+        Ok((Phenotype { expression, network, equilibrium, measures }, lineage))
     }
 }
 
@@ -106,6 +117,7 @@ impl Setting {
 pub struct Evaluator {
     growth: Growth,
     network: Network<'static>,
+    heir: Heir,
     solver: Solver,
     equilibrium: Equilibrium,
 }
@@ -120,8 +132,8 @@ pub struct Evaluation {
 }
 
 impl Evaluator {
-    /// Grows, solves and measures a closed forest, with the outcome of [`Setting::evaluate`]; tells `observe` when a
-    /// stage ends.
+    /// Grows, solves and measures a closed forest in the order of elimination of its parent, with the outcome of
+    /// [`Setting::evaluate`] but for rounding; tells `observe` when a stage ends.
     ///
     /// # Errors
     /// The filters leave no net, or the net no equilibrium.
@@ -129,6 +141,7 @@ impl Evaluator {
         &mut self,
         setting: &Setting,
         forest: &Forest,
+        parent: &Lineage,
         observe: &mut impl FnMut(Stage),
     ) -> Result<Evaluation, PhenotypeError> {
         let Setting { mesh, catalogue, method, anchors, embedding, law, solver } = setting;
@@ -137,8 +150,8 @@ impl Evaluator {
         observe(Stage::Filter);
         assemble_into(expression, embedding, *law, &mut self.network);
         observe(Stage::Nodes);
-        self.solver.solve_into(&self.network, solver, &mut self.equilibrium);
-        observe(Stage::Solve);
+        let order = self.heir.order(&expression.nodes, parent);
+        self.solver.solve_ordered_into(&self.network, solver, Some(order), &mut self.equilibrium, observe);
         let Equilibrium { positions, forces, residual, status, .. } = &self.equilibrium;
         if *status != Status::Converged {
             return Err(PhenotypeError::Equilibrium(*status, *residual));

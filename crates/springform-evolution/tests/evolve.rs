@@ -102,8 +102,10 @@ proptest! {
                 prop_assert_eq!(Edit::apply_all(&individual.edits, &mut forest), Ok(()));
                 prop_assert_eq!(individual.fingerprint, forest.fingerprint());
                 let phenotype = start.setting.evaluate(&forest).ok();
-                prop_assert_eq!(individual.measures, phenotype.as_ref().map(|net| net.measures));
-                prop_assert_eq!(individual.residual, phenotype.map(|net| net.equilibrium.residual));
+                prop_assert_eq!(individual.measures.is_some(), phenotype.is_some());
+                if let (Some(measures), Some(net)) = (individual.measures, phenotype) {
+                    prop_assert!(runs::alike(&measures, &net.measures), "{measures:?} {:?}", net.measures);
+                }
                 prop_assert!(individual.residual.is_none_or(|residual| residual <= 1e-9));
             }
         }
@@ -143,7 +145,8 @@ proptest! {
                     let individual = &generation.individuals[winner];
                     prop_assert!(individual.score.is_defined());
                     prop_assert_eq!(after.forest.fingerprint(), individual.fingerprint);
-                    prop_assert_eq!(Some(after.measures), individual.measures);
+                    let measures = individual.measures.expect("a winner is measured");
+                    prop_assert!(runs::alike(&after.measures, &measures));
                     prop_assert_eq!(after.suf, individual.suf);
                     prop_assert_eq!(after.strategy, individual.strategy);
                     if parameters.criterion.niche.is_none() {
@@ -169,13 +172,16 @@ proptest! {
         parameters.criterion.fitness = Fitness::Differential;
         parameters.criterion.niche = None;
         parameters.criterion.min_length = None;
+        (parameters.criterion.min_springs, parameters.criterion.max_springs) = (None, None);
         let mut evolution = begin(&start, &parameters, runs::strategy(&mut dice), 1);
         let mut best = evolution.parent().measures.force_differential;
         for _ in 0..GENERATIONS {
             advance(&mut evolution, 1);
             let now = evolution.parent().measures.force_differential;
+            // What a mutant measures and what it measures as parent differ by rounding.
+            let room = |best: f64| best * (1.0 + 1e-9 + 1e-14 * best);
             prop_assert!(
-                best.is_none() || now.is_some_and(|now| Some(now) <= best), "{now:?} after {best:?}"
+                best.is_none_or(|best| now.is_some_and(|now| now <= room(best))), "{now:?} after {best:?}"
             );
             best = now;
         }

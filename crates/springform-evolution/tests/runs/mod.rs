@@ -144,3 +144,25 @@ pub fn cylinder() -> Start {
     let forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
     Start { setting, forest }
 }
+
+/// Measures that differ by rounding only: what a mutant measures in its parent's order of elimination, and what its
+/// genotype measures alone.
+pub fn alike(a: &Measures, b: &Measures) -> bool {
+    let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-9 * size || a.to_bits() == b.to_bits();
+    let differentials = match (a.force_differential, b.force_differential) {
+        // The smallest force is known as well as the largest, which is more than it is as a share of itself.
+        (Some(a), Some(b)) => near(a, b, a * (1.0 + 1e-5 * a)),
+        (a, b) => a == b,
+    };
+    (a.springs, a.nodes, a.cells) == (b.springs, b.nodes, b.cells)
+        && differentials
+        && near(a.force_min, b.force_min, a.force_max)
+        && near(a.force_max, b.force_max, a.force_max)
+        && near(a.force_mean, b.force_mean, a.force_max)
+        && near(a.force_deviation, b.force_deviation, a.force_max)
+        && near(a.force_range, b.force_range, a.force_max)
+        && near(a.total_length, b.total_length, a.total_length)
+        && near(a.load_path, b.load_path, a.load_path)
+        && near(a.area, b.area, a.total_length * a.total_length)
+        && near(a.shortest_spring, b.shortest_spring, a.total_length)
+}

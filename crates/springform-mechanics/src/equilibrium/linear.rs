@@ -5,6 +5,7 @@ use super::supports::Supports;
 use super::tangent::Layout;
 use crate::network::Network;
 use crate::sparse::{Graph, Lanes, ScalarFactor};
+use crate::stage::Stage;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Workspace of linear solves.
@@ -36,6 +37,7 @@ impl Linear {
         layout: &Layout,
         settings: &Settings,
         result: &mut Equilibrium,
+        observe: &mut impl FnMut(Stage),
     ) {
         self.assemble(network, supports, layout);
         if self.pattern != layout.pattern {
@@ -48,6 +50,7 @@ impl Linear {
             *result = Equilibrium::at(network, network.positions.to_vec(), Status::Singular, 0);
             return;
         }
+        observe(Stage::Factor);
         loop {
             self.factor.solve(&mut self.sides);
             for (&node, step) in supports.nodes.iter().zip(&self.sides) {
@@ -74,6 +77,7 @@ impl Linear {
         result.positions.clear();
         result.positions.extend(self.positions.iter().map(|&[x, y, z, _]| [x, y, z]));
         result.forces.clone_from(&self.forces);
+        observe(Stage::Solve);
     }
 
     fn assemble(&mut self, network: &Network<'_>, supports: &Supports, layout: &Layout) {

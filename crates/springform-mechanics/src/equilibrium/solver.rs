@@ -10,7 +10,9 @@ use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unh
 use super::supports::Supports;
 use super::tangent::{Layout, along};
 use crate::network::Network;
+use crate::rod::Bend;
 use crate::sparse::Lanes;
+use crate::stage::Stage;
 use crate::vector::{Vector, length};
 
 /// Most steps in a scalar metric.
@@ -30,8 +32,8 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
     Solver::default().solve(network, settings)
 }
 
-/// Workspace of solves; networks solved one after the other share its memory, and the ordering if their pattern is the
-/// same. What it solved before changes no result.
+/// Workspace of solves; networks solved one after the other share its memory, and the order of elimination if their
+/// pattern is the same. What it solved before changes no result.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Solver {
     supports: Supports,
@@ -40,6 +42,7 @@ pub struct Solver {
     linear: Linear,
     descent: Descent,
     newton: Newton,
+    bends: Vec<Bend>,
     positions: Vec<Lanes>,
 }
 
@@ -53,17 +56,36 @@ impl Solver {
 
     /// Solves a network that passes [`Network::check`] into a result whose memory is used again.
     pub fn solve_into(&mut self, network: &Network<'_>, settings: &Settings, result: &mut Equilibrium) {
+        self.solve_ordered_into(network, settings, None, result, &mut |_| {});
+    }
+
+    /// Solves in a given order of elimination, that of a net of about the same pattern, which saves ordering; `order`
+    /// has every node once, held nodes or not. Tells `observe` when a stage ends.
+    ///
+    /// Another order changes a result by rounding only.
+    pub fn solve_ordered_into(
+        &mut self,
+        network: &Network<'_>,
+        settings: &Settings,
+        order: Option<&[u32]>,
+        result: &mut Equilibrium,
+        observe: &mut impl FnMut(Stage),
+    ) {
         if let Some(node) = unheld_node(network) {
             *result = Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
             return;
         }
         self.supports.build(network);
         if network.is_linear() {
-            self.elements.bends.clear();
-            self.layout.build(network, &self.elements, &self.supports);
-            self.linear.solve(network, &self.supports, &self.layout, settings, result);
+            self.layout.build(network, &[], &self.supports, order);
+            observe(Stage::Order);
+            self.linear.solve(network, &self.supports, &self.layout, settings, result, observe);
             return;
         }
+        self.bends.clear();
+        self.bends.extend(network.rods.iter().flat_map(|rod| rod.bends()));
+        self.layout.build(network, &self.bends, &self.supports, order);
+        observe(Stage::Order);
         *result = if network.has_followers() {
             self.follow(network, settings)
         } else {
@@ -71,6 +93,12 @@ impl Solver {
                 self.still(network, settings, &network.positions, &[], settings.iterations);
             Equilibrium { method, ..Equilibrium::at(network, positions, status, iterations) }
         };
+        observe(Stage::Solve);
+    }
+
+    /// The order of elimination of the network that was solved last: its free nodes.
+    pub fn order(&self) -> impl Iterator<Item = u32> + '_ {
+        self.layout.symbolic.order().iter().map(|&row| self.supports.nodes[row as usize])
     }
 
     /// Solves under loads that follow the shape: again and again under the loads that the last shape gives.
@@ -120,7 +148,6 @@ impl Solver {
         limit: u32,
     ) -> (Vec<Vector>, Status, u32, Method) {
         self.elements.build(network, more);
-        self.layout.build(network, &self.elements, &self.supports);
         let mut positions = std::mem::take(&mut self.positions);
         parted(network, start, &mut positions);
         let (status, iterations, method) = self.move_to_rest(network, settings, &mut positions, limit);

@@ -1,6 +1,6 @@
 //! Tangent stiffness of springs of any law and of rods, in blocks of three by three.
 
-use super::elements::{Elements, vector};
+use super::elements::vector;
 use super::supports::Supports;
 use crate::network::{Network, Sense};
 use crate::rod::Bend;
@@ -16,24 +16,34 @@ pub(super) struct Layout {
     pub(super) ends: Vec<[u32; 2]>,
     /// Another number for each pattern, from 1.
     pub(super) pattern: u64,
+    order: Vec<u32>,
 }
 
 impl Layout {
-    /// Numbers rows and links and orders the elimination.
-    pub(super) fn build(&mut self, network: &Network<'_>, elements: &Elements, supports: &Supports) {
+    /// Numbers rows and links and orders the elimination: as the nodes are given, each once, or by minimum degree.
+    pub(super) fn build(
+        &mut self,
+        network: &Network<'_>,
+        bends: &[Bend],
+        supports: &Supports,
+        order: Option<&[u32]>,
+    ) {
         let rows = |pair: [u32; 2]| pair.map(|node| supports.rows[node as usize]);
-        let bends = elements.bends.iter().map(|bend| bend.nodes);
-        let pairs = bends.flat_map(|[a, b, c]| [[a, b], [b, c], [a, c]]);
+        let pairs = bends.iter().map(|bend| bend.nodes).flat_map(|[a, b, c]| [[a, b], [b, c], [a, c]]);
         let links = network.springs.iter().copied().chain(pairs).map(rows);
         let known = self.pattern > 0 && supports.nodes.len() == self.graph.rows();
-        if known && links.clone().eq(self.ends.iter().copied()) {
+        if order.is_none() && known && links.clone().eq(self.ends.iter().copied()) {
             return;
         }
         self.pattern += 1;
         self.ends.clear();
         self.ends.extend(links);
         self.graph.build(supports.nodes.len(), self.ends.iter().copied());
-        self.symbolic.build(&self.graph);
+        let Some(order) = order else { return self.symbolic.build(&self.graph) };
+        self.order.clear();
+        let rows = order.iter().map(|&node| supports.rows[node as usize]);
+        self.order.extend(rows.filter(|&row| row != Graph::OUTSIDE));
+        self.symbolic.build_ordered(&self.graph, &self.order);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Kinship: which nodes and springs of a net are those of another, such as a mutant's of its parent.
 
 use super::Expression;
+use crate::node_key::NodeKey;
 
 /// Nodes and springs of one net found again in another, by the keys of nodes, and the memory to do it again.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -19,12 +20,7 @@ impl Kinship {
     /// Finds the nodes and springs of a net in another one on the same base mesh. Both are in order, so it takes one
     /// pass over each.
     pub fn find(&mut self, net: &Expression, other: &Expression) {
-        self.nodes.clear();
-        let mut rest = 0;
-        self.nodes.extend(net.nodes.iter().map(|&key| {
-            rest += other.nodes[rest..].iter().take_while(|&&other| other < key).count();
-            if other.nodes.get(rest) == Some(&key) { rest as u32 } else { Kinship::NONE }
-        }));
+        self.find_nodes(&net.nodes, &other.nodes);
         self.springs.clear();
         let mut rest = 0;
         let nodes = &self.nodes;
@@ -37,6 +33,15 @@ impl Kinship {
             let found =
                 other.springs.get(rest).is_some_and(|other| (other.nodes, other.ring) == (ends, spring.ring));
             if found { rest as u32 } else { Kinship::NONE }
+        }));
+    }
+    /// Finds nodes alone, both ascending.
+    pub fn find_nodes(&mut self, nodes: &[NodeKey], others: &[NodeKey]) {
+        self.nodes.clear();
+        let mut rest = 0;
+        self.nodes.extend(nodes.iter().map(|&key| {
+            rest += others[rest..].iter().take_while(|&&other| other < key).count();
+            if others.get(rest) == Some(&key) { rest as u32 } else { Kinship::NONE }
         }));
     }
 }
