@@ -420,6 +420,8 @@ OPTIONS: list[tuple[tuple[str, ...], list[str]]] = [
     ((*EVOLVE, "--niche", "1.5"), ["--niche"]),
     ((*EVOLVE, "--min-length", "0"), ["min_length"]),
     ((*EVOLVE, "--min-length", "nan"), ["min_length"]),
+    ((*EVOLVE, "--min-springs", "0"), ["min_springs"]),
+    ((*EVOLVE, "--min-springs", "9", "--max-springs", "8"), ["min_springs", "max_springs"]),
     ((*EVOLVE, "--selection", "roulette"), ["selection", "comma"]),
     ((*EVOLVE, "--until-springs", "0"), ["until_springs"]),
     ((*EVOLVE, "--until-differential", "0"), ["until_differential"]),

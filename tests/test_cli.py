@@ -501,6 +501,15 @@ def test_min_length_bars_short_springs() -> None:
             assert table["shortest_spring"][(generation - 1) * 20 + winner] >= limit
 
 
+def test_limits_on_springs_bar_nets_beyond_them() -> None:
+    run = evolved("--min-springs", "290", "--max-springs", "300", "--population", "20")
+    springs = run.table["springs"]
+    assert ((springs < 290) | (springs > 300)).any()
+    for generation, winner in enumerate(run.parents, start=1):
+        if winner is not None:
+            assert 290 <= springs[(generation - 1) * 20 + winner] <= 300
+
+
 def test_self_adaptation_changes_the_strategy() -> None:
     def strategies(out: str) -> list[str]:
         lines = (Path(out) / "journal.jsonl").read_text().splitlines()

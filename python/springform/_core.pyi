@@ -350,7 +350,7 @@ class ImplicitEuler:
         """Make one time step and return the state after it."""
 
 def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> SolveResult:
-    """Solve a bare network by "direct" or "implicit-euler"."""
+    """Solve a bare network by "direct", "implicit-euler" or "dynamic-relaxation"."""
 
 def residuals(network: _NetworkArrays) -> _Floats:
     """Return the force out of balance at every free node, (n, 3) [N]."""
@@ -389,6 +389,8 @@ class Evolution:
         suf_reference: str,
         niche: int | None,
         min_length: float | None,
+        min_springs: int | None,
+        max_springs: int | None,
         selection: str,
         threads: int,
         resumed: tuple[int, _Standing, float | None] | None = None,

@@ -17,12 +17,12 @@ from .arrays import Floats, axes_of, mask_of, node_numbers, numbers, read_only, 
 from .errors import InputError
 from .spring_laws import Curves, resolve, senses, spring_lengths
 
-Solver = Literal["direct", "implicit-euler"]
+Solver = Literal["direct", "implicit-euler", "dynamic-relaxation"]
 
 TOLERANCE = 1e-9
 """Largest residual at a free node over the mean spring force at which a net counts as solved."""
 
-_ITERATIONS = {"direct": 500, "implicit-euler": 5000}
+_ITERATIONS = {"direct": 500, "implicit-euler": 5000, "dynamic-relaxation": 200_000}
 
 Slide = tuple[int, str, Sequence[float]]
 """A node, "line" and a direction, or "plane" and a normal."""
@@ -254,13 +254,15 @@ def solve(
     """Solve a network; the interpreter lock is free meanwhile.
 
     "direct" factors stiffness matrices, and chooses its method by the net; "implicit-euler" moves
-    the net step by step, as the paper does (footnote 1). `start` are positions to start at
-    instead of the network's, such as a neighbour's equilibrium. A net that finds no equilibrium
-    is no error: see `converged` and `reason`. Raises `InputError`: the network or solver is
-    refused.
+    the net step by step, as the paper does (footnote 1), "dynamic-relaxation" by explicit steps
+    with kinetic damping, for springs without curves and dead loads only. `start` are positions to
+    start at instead of the network's, such as a neighbour's equilibrium. A net that finds no
+    equilibrium is no error: see `converged` and `reason`. Raises `InputError`: the network or
+    solver is refused.
     """
     if solver not in _ITERATIONS:
-        raise InputError(f"unknown solver '{solver}'; use direct or implicit-euler", key="solver")
+        known = ", ".join(_ITERATIONS)
+        raise InputError(f"unknown solver '{solver}'; use one of {known}", key="solver")
     _check("tolerance", tolerance)
     limit = _ITERATIONS[solver] if iterations is None else iterations
     if not 0 <= limit < 2**31:

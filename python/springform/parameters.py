@@ -88,6 +88,10 @@ class Parameters(BaseModel):
     """Amounts and weighting belong to the individual and mutate with it."""
     min_length: Annotated[float, Field(gt=0)] | None = None
     """Shortest spring allowed [m]; individuals with a shorter one do not win."""
+    min_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
+    """Fewest springs allowed; individuals with fewer do not win."""
+    max_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
+    """Most springs allowed; individuals with more do not win."""
     selection: Literal["comma", "plus"] = "comma"
     """Whether the parent contends: plus, or not: comma."""
     until_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
@@ -121,7 +125,7 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
         given["types"] = DEFAULT_TYPES[method]
     given["types"] = _listed(given["types"])
     try:
-        return Parameters(**given)
+        return _in_order(Parameters(**given))
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in fault["loc"])
@@ -129,6 +133,13 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
         raise InputError(f"unknown parameter; {nearest(key, Parameters.model_fields)}", key=key)
     problem = fault["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     raise InputError(f"{problem}, not {fault['input']!r}", key=key)
+
+
+def _in_order(parameters: Parameters) -> Parameters:
+    least, most = parameters.min_springs, parameters.max_springs
+    if least is not None and most is not None and least > most:
+        raise InputError(f"must be at most max_springs, {most}, not {least}", key="min_springs")
+    return parameters
 
 
 def _listed(types: Any) -> tuple[str, ...]:

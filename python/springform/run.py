@@ -208,9 +208,14 @@ class Run:
     def _lowest_row(self) -> int | None:
         if not self.table:
             return None
-        differential = self.table["force_differential"].copy()
-        if self.parameters.min_length is not None:
-            differential[self.table["shortest_spring"] < self.parameters.min_length] = np.nan
+        table, limits = self.table, self.parameters
+        differential = table["force_differential"].copy()
+        if limits.min_length is not None:
+            differential[table["shortest_spring"] < limits.min_length] = np.nan
+        if limits.min_springs is not None:
+            differential[table["springs"] < limits.min_springs] = np.nan
+        if limits.max_springs is not None:
+            differential[table["springs"] > limits.max_springs] = np.nan
         return None if np.isnan(differential).all() else int(np.nanargmin(differential))
 
     def _at(self, column: str, row: int) -> int:
@@ -256,6 +261,8 @@ def start_evolution(
             suf_reference=parameters.suf_reference,
             niche=parameters.niche,
             min_length=parameters.min_length,
+            min_springs=parameters.min_springs,
+            max_springs=parameters.max_springs,
             selection=parameters.selection,
             threads=threads,
             resumed=resumed,

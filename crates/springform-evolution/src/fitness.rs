@@ -65,6 +65,10 @@ pub struct Criterion {
     pub niche: Option<u32>,
     /// Shortest spring allowed [m]; individuals with a shorter one are undefined.
     pub min_length: Option<f64>,
+    /// Fewest springs allowed; individuals with fewer are undefined.
+    pub min_springs: Option<u32>,
+    /// Most springs allowed; individuals with more are undefined.
+    pub max_springs: Option<u32>,
 }
 
 impl Criterion {
@@ -78,8 +82,7 @@ impl Criterion {
     ///
     /// Where the reference has no force differential there is no factor to compare, and the differential counts.
     pub fn score(&self, measures: &Measures, start: Standing, parent: Standing) -> Score {
-        let too_short = self.min_length.is_some_and(|length| measures.shortest_spring < length);
-        let (Some(differential), false) = (measures.force_differential, too_short) else {
+        let (Some(differential), true) = (measures.force_differential, self.allows(measures)) else {
             return Score::UNDEFINED;
         };
         let comparable = self.reference(start, parent).differential.is_some();
@@ -91,6 +94,13 @@ impl Criterion {
             (Fitness::Suf, Some(suf)) if suf <= 0.0 => Score { rank: 0, value: differential },
             (Fitness::Suf, Some(suf)) => Score { rank: 1, value: suf },
         }
+    }
+
+    fn allows(&self, measures: &Measures) -> bool {
+        let springs = measures.springs;
+        self.min_length.is_none_or(|length| measures.shortest_spring >= length)
+            && self.min_springs.is_none_or(|least| springs >= least)
+            && self.max_springs.is_none_or(|most| springs <= most)
     }
 
     /// Score of a parent that contends with its mutants: against itself nothing rose, so its differential counts.

@@ -212,6 +212,8 @@ fn comma_selection_takes_worse_parents_on_the_way() {
             reference: SufReference::Start,
             niche: None,
             min_length: None,
+            min_springs: None,
+            max_springs: None,
         },
         selection: Selection::Comma,
     };

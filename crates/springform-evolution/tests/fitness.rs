@@ -9,8 +9,14 @@ use runs::standing;
 use springform_evolution::ending::{Ending, Reason};
 use springform_evolution::fitness::{Criterion, Fitness, Score, Standing, SufReference};
 
-const SUF: Criterion =
-    Criterion { fitness: Fitness::Suf, reference: SufReference::Start, niche: None, min_length: None };
+const SUF: Criterion = Criterion {
+    fitness: Fitness::Suf,
+    reference: SufReference::Start,
+    niche: None,
+    min_length: None,
+    min_springs: None,
+    max_springs: None,
+};
 
 /// Springs and force differential of the start and of the parent.
 const START: Standing = Standing { springs: 100, differential: Some(10.0) };
@@ -139,6 +145,13 @@ fn springs_that_are_too_short_make_a_net_undefined() {
         criterion.score(&measures, START, PARENT).is_defined()
     };
     assert_eq!([0.19, 0.2, 0.21].map(defined), [false, true, true]);
+}
+
+#[test]
+fn too_few_or_too_many_springs_make_a_net_undefined() {
+    let criterion = Criterion { min_springs: Some(110), max_springs: Some(120), ..SUF };
+    let defined = |springs| score(&criterion, springs, Some(9.0)).is_defined();
+    assert_eq!([109, 110, 120, 121].map(defined), [false, true, true, false]);
 }
 
 #[test]

@@ -67,7 +67,7 @@ impl Evolution {
     #[new]
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (setting, forest, *, population, seed, types, strategy, base, exponent, self_adapt,
-        fitness, suf_reference, niche, min_length, selection, threads, resumed=None))]
+        fitness, suf_reference, niche, min_length, min_springs, max_springs, selection, threads, resumed=None))]
     fn new(
         py: Python<'_>,
         setting: &Setting,
@@ -83,6 +83,8 @@ impl Evolution {
         suf_reference: &str,
         niche: Option<u32>,
         min_length: Option<f64>,
+        min_springs: Option<u32>,
+        max_springs: Option<u32>,
         selection: &str,
         threads: usize,
         resumed: Option<Resumed>,
@@ -114,7 +116,7 @@ impl Evolution {
             types,
             weights: WeightingParameters { base, exponent },
             self_adapt,
-            criterion: Criterion { fitness, reference, niche, min_length },
+            criterion: Criterion { fitness, reference, niche, min_length, min_springs, max_springs },
             selection,
         };
         let strategy = self::strategy(strategy)?;

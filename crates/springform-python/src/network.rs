@@ -5,7 +5,9 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArr
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springform_mechanics::curve::Curve;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Status, implicit_euler};
+use springform_mechanics::equilibrium::{
+    self, Equilibrium, Settings, Status, dynamic_relaxation, implicit_euler,
+};
 use springform_mechanics::network::{Network, Path, Pressure, Sense, Slide};
 use springform_mechanics::rod::Rod;
 use springform_mechanics::vector::Vector;
@@ -153,7 +155,7 @@ fn sense(number: i8) -> Sense {
     }
 }
 
-/// Solves a bare network by "direct" or "implicit-euler".
+/// Solves a bare network by "direct", "implicit-euler" or "dynamic-relaxation".
 #[pyfunction]
 pub fn solve<'py>(
     py: Python<'py>,
@@ -169,12 +171,12 @@ pub fn solve<'py>(
         "implicit-euler" => {
             py.detach(|| implicit_euler::solve(&network, &settings, implicit_euler::Motion::default()))
         }
-        _ => {
-            return Err(refusal(
-                "solver",
-                format!("unknown solver '{solver}'; use direct or implicit-euler"),
-            ));
+        "dynamic-relaxation" if !dynamic_relaxation::suits(&network) => {
+            let problem = "dynamic-relaxation knows no rods, curves, slides and loads that follow; use another";
+            return Err(refusal("solver", problem));
         }
+        "dynamic-relaxation" => py.detach(|| dynamic_relaxation::solve(&network, &settings)),
+        _ => return Err(refusal("solver", format!("unknown solver '{solver}'"))),
     };
     equilibrium_dict(py, &network, result)
 }

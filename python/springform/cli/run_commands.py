@@ -82,6 +82,8 @@ def evolve_command(
         bool, typer.Option("--self-adapt", help="Amounts and weighting mutate with individuals.")
     ] = False,
     min_length: Annotated[float | None, typer.Option(help="Shortest spring allowed [m].")] = None,
+    min_springs: Annotated[int | None, typer.Option(help="Fewest springs allowed.")] = None,
+    max_springs: Annotated[int | None, typer.Option(help="Most springs allowed.")] = None,
     selection: Annotated[str | None, typer.Option(help="comma or plus [comma].")] = None,
     until_springs: Annotated[
         int | None, typer.Option(help="End once the parent has this many springs.")
@@ -109,6 +111,8 @@ def evolve_command(
         "niche": niche,
         "self_adapt": self_adapt,
         "min_length": min_length,
+        "min_springs": min_springs,
+        "max_springs": max_springs,
         "selection": selection,
         "until_springs": until_springs,
         "until_differential": until_differential,

@@ -82,6 +82,8 @@ pub fn criterion(dice: &mut Dice) -> Criterion {
         reference: dice.pick(&[SufReference::Start, SufReference::Parent, SufReference::Zero]),
         niche: dice.pick(&[None, Some(4), Some(30)]),
         min_length: dice.pick(&[None, None, Some(0.05)]),
+        min_springs: dice.pick(&[None, None, Some(20)]),
+        max_springs: dice.pick(&[None, None, Some(60)]),
     }
 }
 

@@ -12,6 +12,7 @@
 //! never panics on a bad net.
 
 mod descent;
+pub mod dynamic_relaxation;
 mod elements;
 mod followers;
 pub mod implicit_euler;

@@ -51,8 +51,10 @@ pub enum Method {
     Newton,
     /// Newton steps after an interior-point phase.
     Interior,
-    /// Time steps.
+    /// Time steps, each one linear system.
     ImplicitEuler,
+    /// Explicit time steps with kinetic damping.
+    DynamicRelaxation,
 }
 
 impl Method {
@@ -64,6 +66,7 @@ impl Method {
             Method::Newton => "newton",
             Method::Interior => "interior",
             Method::ImplicitEuler => "implicit-euler",
+            Method::DynamicRelaxation => "dynamic-relaxation",
         }
     }
 }

@@ -1,0 +1,84 @@
+"""The command that measures: bench."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .. import bench
+from ..bench import machine, reference
+from .terminal import Json, StoppedError, print_report, say
+
+commands = typer.Typer()
+
+
+@commands.command("bench", epilog="Example: `springform bench individual threads`")
+def bench_command(
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[CASE]…",
+            help=f"{', '.join(bench.CASES)}; or {', '.join(bench.GROUPS)} for several.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for a CSV file a case, below the machine's name.")
+    ] = None,
+    label: Annotated[
+        str, typer.Option(help="What to call the code that is timed, in the files.")
+    ] = "",
+    quick: Annotated[
+        bool,
+        typer.Option("--quick", help="Small nets, few rounds: to see that it works, not how fast."),
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Time springFORM beside CHOLMOD and whatever other engines are installed."""
+    names = bench.chosen(cases or [])
+    settings = bench.Bench()
+    if quick:
+        settings = replace(settings, quick=True, effort=bench.Effort(2, 1, 1.0, 0.001))
+    if not reference.available():
+        say(
+            "the reference has not been built, so there are no ratios: `make bench` builds it, "
+            "or see bench/README.md"
+        )
+
+    shown = ""
+
+    def show(row: bench.Row) -> None:
+        nonlocal shown
+        if row.heading() != shown:
+            shown = row.heading()
+            (say if as_json else print)(shown)
+        if not as_json:
+            print(row.line(), flush=True)
+
+    found: dict[str, list[dict[str, object]]] = {}
+    try:
+        for result in bench.run(names, bench=settings, out=out, label=label, on_row=show):
+            found[result.case] = [row.report() for row in result.rows]
+            if result.path is not None:
+                say(f"wrote {result.path}")
+    except KeyboardInterrupt:
+        whole = ", ".join(found) or "no case"
+        raise StoppedError(f"{whole} had been measured; the case under way left no file") from None
+    report = {
+        "machine": {
+            "name": machine.slug(),
+            "processor": machine.processor(),
+            "cores": machine.cores(),
+        },
+        "versions": bench.versions(),
+        "label": label,
+        "quick": quick,
+        "cases": found,
+    }
+    if as_json:
+        print_report(report, as_json)
+    else:
+        versions = ", ".join(f"{name} {version}" for name, version in bench.versions().items())
+        say(f"on {machine.processor()}, {machine.cores()} cores; {versions}")
