@@ -17,6 +17,15 @@ PACKAGE := $(VENV)/package.stamp
 SCHEMA := docs/formats/design.schema.json
 DEMO := runs/demo
 
+# Cases of `springform bench`, and where their figures go.
+CASES ?=
+RESULTS ?= bench/results
+BENCH := $(CURDIR)/build/bench
+REFERENCE := $(BENCH)/libreference.so
+BENCH_PACKAGES := $(BENCH)/packages.stamp
+BASE ?= HEAD
+MOST ?= 1.02
+
 # What a machine must have is checked before anything is built, and said in one line.
 ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   ifeq ($(shell command -v cargo),)
@@ -81,8 +90,17 @@ lint: $(PACKAGE) # check layout, lints, types, layers and generated files
 	python -c "$$print_schema" | diff $(SCHEMA) - || { echo "make schema renews $(SCHEMA)" >&2; exit 1; }
 
 .PHONY: bench
-bench: $(PACKAGE) # time the evaluation of individuals
-	@python bench/individual.py
+bench: $(PACKAGE) $(REFERENCE) $(BENCH_PACKAGES) # time springFORM beside CHOLMOD and other engines; CASES="growth threads"
+	@SPRINGFORM_REFERENCE=$(REFERENCE) $(BENCH)/venv/bin/python -c "from springform.cli import main; main()" \
+	    bench $(CASES) --out $(RESULTS) --label "$$(git describe --always --dirty 2> /dev/null || echo unknown)"
+
+.PHONY: stages
+stages: # time every stage of an individual with Criterion
+	@cargo bench --locked --quiet -p springform-evolution --bench stages
+
+.PHONY: guard
+guard: # count instructions here and at another commit: BASE=main, and fail above MOST=1.02 times
+	@$(BASE_PYTHON) bench/guard.py $(BASE) $(MOST)
 
 .PHONY: format
 format: $(REQUIREMENTS) # lay out Rust and Python code
@@ -127,6 +145,29 @@ $(REQUIREMENTS): requirements.lock
 	@$(BASE_PYTHON) -m venv --clear $(VENV)
 	pip install --quiet pip==$(PIP_VERSION)
 	pip install --quiet --requirement requirements.lock
+	touch $@
+
+# Without CHOLMOD there are no ratios; that is said, and everything else is timed.
+$(REFERENCE): bench/cholmod.c
+	@mkdir -p $(BENCH)
+	compile() { cc -O2 -Wall -Wextra -shared -fPIC -I/usr/include/suitesparse -o $@ $< -lcholmod; }
+	compile 2> /dev/null && exit
+	if command -v apt-get > /dev/null && [ "$$(id -u)" = 0 ]; then
+	    apt-get update -qq
+	    DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes --no-install-recommends \
+	        libsuitesparse-dev libopenblas0-pthread > /dev/null
+	fi
+	compile || echo "bench: no ratios: install the headers of SuiteSparse (Debian: libsuitesparse-dev) and OpenBLAS" >&2
+
+# An environment of its own, in which the packages of .venv are seen, too.
+$(BENCH_PACKAGES): $(REQUIREMENTS) $(REFERENCE) bench/requirements.txt bench/requirements-jax.txt
+	@$(BASE_PYTHON) -m venv --clear $(BENCH)/venv
+	printf '%s\n' $(CURDIR)/python $(VENV)/lib/python3.*/site-packages \
+	    > "$$(echo $(BENCH)/venv/lib/python3.*/site-packages)/springform.pth"
+	for package in $$(cat bench/requirements.txt $(if $(JAX),bench/requirements-jax.txt) | sed 's/#.*//'); do
+	    $(BENCH)/venv/bin/pip install --quiet --no-deps "$$package" \
+	        || echo "bench: $$package can't be had here: its figures are left out" >&2
+	done
 	touch $@
 
 define print_schema

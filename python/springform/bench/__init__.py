@@ -1,6 +1,7 @@
 """Benchmarks: springFORM beside CHOLMOD and other engines, all timed in the same rounds.
 
-Every case yields rows; `run` collects them. What a case measures and how to read it: bench/README.md.
+Every case yields rows; `run` collects them. What a case measures, and how to read it, says
+bench/README.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Cases `nonlinear-*`: cords of non-zero rest length on a cylinder, cold, warm, and other engines."""
+"""Cases `nonlinear-*`: cords with rest lengths on a cylinder, cold, warm, and other engines."""
 
 from __future__ import annotations
 

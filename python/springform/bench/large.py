@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
 import json
 import math
 import re
@@ -95,7 +96,7 @@ def _once(design: Design) -> tuple[list[float], float]:
     clock.append(time.perf_counter())
     closed.measure(found)
     clock.append(time.perf_counter())
-    return [last - first for first, last in zip(clock, clock[1:], strict=False)], found.residual
+    return [last - first for first, last in itertools.pairwise(clock)], found.residual
 
 
 def _memory(case: str, net: str, springs: int) -> Row:

@@ -113,7 +113,8 @@ class Cylinder:
         row, column = np.divmod(np.arange(self.around * (self.rows - 1)), self.around)
         sides = [self._above(row, column, side) for side in (0, 1)]
         corners = [self._node(row, column), *sides, self._node(row + 2, column)]
-        return np.column_stack(corners).tolist()
+        found: list[list[int]] = np.column_stack(corners).tolist()
+        return found
 
     def _node(self, row: Whole | int, column: Whole) -> Whole:
         return row * self.around + column % self.around

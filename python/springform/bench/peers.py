@@ -1,11 +1,13 @@
 """Other engines on the same cylinder net: same law, same residual, judged by the same code.
 
-Every peer is optional and imported when asked for. Within the clock: whatever has to be done anew for a
-net, factorisation included. Outside: building the peer's data structures from arrays, our checks of the residual.
+Every peer is optional and imported when asked for. Within the clock: whatever has to be done anew
+for a net, factorisation included. Outside: building the peer's data structures from arrays, and
+our checks of the residual.
 """
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.metadata
 import time
@@ -69,11 +71,9 @@ class Peer:
 
 
 def _shapeop(cords: Cords, residual: float, seconds: float) -> Outcome:
-    from compas_shapeop.shapeop import Solver
-
     network = cords.network()
     ratios = (cords.rest_length / spring_lengths(cords.positions, cords.springs)).tolist()
-    solver = Solver()
+    solver = importlib.import_module("compas_shapeop.shapeop").Solver()
     solver.points = cords.positions
     for node in np.flatnonzero(cords.fixed).tolist():
         solver.add_closeness_constraint(node, ANCHOR_WEIGHT)
@@ -93,12 +93,9 @@ def _shapeop(cords: Cords, residual: float, seconds: float) -> Outcome:
 
 
 def _compas_dr(cords: Cords, residual: float, seconds: float) -> Outcome:
-    from compas_dr.numdata import InputData
-    from compas_dr.solvers import dr_numpy
-
     network = cords.network()
     count = len(cords.springs)
-    data = InputData(
+    data = importlib.import_module("compas_dr.numdata").InputData(
         vertices=cords.positions.tolist(),
         edges=cords.springs.tolist(),
         fixed=np.flatnonzero(cords.fixed).tolist(),
@@ -113,10 +110,9 @@ def _compas_dr(cords: Cords, residual: float, seconds: float) -> Outcome:
     )
     size = min(DAMPING, key=lambda springs: abs(np.log(springs / count)))
     checked = _Checks(network, residual, seconds)
-    try:
-        dr_numpy(data, kmax=10**7, tol1=0.0, tol2=0.0, c=DAMPING[size], callback=checked)
-    except _ReachedError:
-        pass
+    relax = importlib.import_module("compas_dr.solvers").dr_numpy
+    with contextlib.suppress(_ReachedError):
+        relax(data, kmax=10**7, tol1=0.0, tol2=0.0, c=DAMPING[size], callback=checked)
     return checked.outcome()
 
 
@@ -149,8 +145,7 @@ class _Checks:
 
 
 def _compas_fd(cords: Cords, residual: float, seconds: float) -> Outcome:
-    from compas_fd.solvers import fd_numpy
-
+    fd_numpy = importlib.import_module("compas_fd.solvers").fd_numpy
     fixed = np.flatnonzero(cords.fixed).tolist()
     vertices, edges = cords.positions.tolist(), cords.springs.tolist()
 
@@ -164,18 +159,17 @@ def _compas_fd(cords: Cords, residual: float, seconds: float) -> Outcome:
 
 
 def _jax_fdm(cords: Cords, residual: float, seconds: float) -> Outcome:
-    import jax
-    from jax_fdm.datastructures import FDNetwork
-    from jax_fdm.equilibrium import EquilibriumModelSparse, EquilibriumStructureSparse
-
+    jax = importlib.import_module("jax")
+    package = importlib.import_module("jax_fdm.equilibrium")
     jax.config.update("jax_enable_x64", True)
-    datastructure = FDNetwork.from_nodes_and_edges(cords.positions.tolist(), cords.springs.tolist())
+    network = importlib.import_module("jax_fdm.datastructures").FDNetwork
+    datastructure = network.from_nodes_and_edges(cords.positions.tolist(), cords.springs.tolist())
     for node in np.flatnonzero(cords.fixed).tolist():
         datastructure.node_support(node)
-    structure = EquilibriumStructureSparse.from_network(datastructure)
+    structure = package.EquilibriumStructureSparse.from_network(datastructure)
     number = {pair: at for at, pair in enumerate(map(tuple, cords.springs.tolist()))}
     order = np.array([number[pair] for pair in map(tuple, np.asarray(structure.edges).tolist())])
-    model = EquilibriumModelSparse()
+    model = package.EquilibriumModelSparse()
     anchors, loads = cords.positions[cords.fixed], np.zeros_like(cords.positions)
     equilibrium = jax.jit(lambda q: model.equilibrium(q, anchors, loads, structure))
 

@@ -1,4 +1,4 @@
-"""The reference: CHOLMOD's analyse, factor and solve of a net's Laplacian, three right-hand sides."""
+"""The reference: CHOLMOD's analyse, factor and solve of a net's Laplacian, three columns."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ class ReferenceError(SpringformError):
 
 @dataclass(frozen=True)
 class Laplacian:
-    """A net's stiffness matrix over its free nodes, k in place of EA/L0, and three right-hand sides."""
+    """A net's Laplacian over its free nodes, weighted by stiffness, and three right-hand sides."""
 
     starts: NDArray[np.int32]
     """(n + 1,) starts of the columns of the lower triangle."""
@@ -206,5 +207,5 @@ def _blas() -> ctypes.CDLL | None:
     return blas
 
 
-def _pointer(array: NDArray[np.generic], kind: type) -> ctypes._Pointer[ctypes._SimpleCData]:
+def _pointer(array: NDArray[Any], kind: Any) -> Any:
     return array.ctypes.data_as(ctypes.POINTER(kind))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.metadata
 
 from ..network import Network
@@ -14,16 +15,16 @@ NAME = "scikit-sparse"
 def timed(network: Network, effort: Effort) -> Timed | None:
     """Return a timer of analyse, factor and solve; None if scikit-sparse is not installed."""
     try:
-        from scipy.sparse import csc_matrix  # noqa: PLC0415  # optional
-        from sksparse.cholmod import analyze  # noqa: PLC0415
+        sparse = importlib.import_module("scipy.sparse")
+        cholmod = importlib.import_module("sksparse.cholmod")
     except ImportError:
         return None
     matrix = Laplacian.of(network)
     size = len(matrix.starts) - 1
-    lower = csc_matrix((matrix.values, matrix.rows, matrix.starts), shape=(size, size))
+    lower = sparse.csc_matrix((matrix.values, matrix.rows, matrix.starts), shape=(size, size))
 
     def work() -> object:
-        factor = analyze(lower, mode="simplicial", ordering_method="amd")
+        factor = cholmod.analyze(lower, mode="simplicial", ordering_method="amd")
         factor.cholesky_inplace(lower)
         return factor(matrix.sides)
 
