@@ -45,7 +45,9 @@ def main() -> int:
         before = _counted(tree, "base")
     except subprocess.CalledProcessError as error:
         lines = [line for line in error.stderr.splitlines() if line.startswith("error")]
-        return _refuse(f"{base} can't build the driver of this tree: {lines[0] if lines else error}")
+        return _refuse(
+            f"{base} can't build the driver of this tree: {lines[0] if lines else error}"
+        )
     finally:
         _remove(tree)
     return _compare(before, now, base, most)

@@ -95,6 +95,8 @@ fn grown(recursive: bool, springs: u32) -> Result<Evolution, PhenotypeError> {
             reference: SufReference::Start,
             niche: None,
             min_length: None,
+            min_springs: None,
+            max_springs: None,
         },
         selection: Selection::Comma,
     };

@@ -35,6 +35,8 @@ fn evolution(method: Method) -> Evolution {
         reference: SufReference::Start,
         niche: None,
         min_length: None,
+        min_springs: None,
+        max_springs: None,
     };
     let parameters = Parameters {
         population: POPULATION,

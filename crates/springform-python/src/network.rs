@@ -172,7 +172,8 @@ pub fn solve<'py>(
             py.detach(|| implicit_euler::solve(&network, &settings, implicit_euler::Motion::default()))
         }
         "dynamic-relaxation" if !dynamic_relaxation::suits(&network) => {
-            let problem = "dynamic-relaxation knows no rods, curves, slides and loads that follow; use another";
+            let problem =
+                "dynamic-relaxation knows no rods, curves, slides and loads that follow; use another";
             return Err(refusal("solver", problem));
         }
         "dynamic-relaxation" => py.detach(|| dynamic_relaxation::solve(&network, &settings)),

@@ -24,6 +24,9 @@ CHILDREN = 8
 PEER_RESIDUAL = 1e-6
 """Residual at which engines are compared: not all of them reach 1e-9."""
 
+LIMIT = 5.0
+"""Seconds after which an engine is given up, up to 20,000 springs; in proportion beyond."""
+
 MOST_ROUNDS = 5
 """Most rounds with all engines: the slow ones take seconds."""
 
@@ -62,9 +65,11 @@ class _Watched:
     def note(self) -> str:
         assert self.outcome is not None
         found = self.outcome
-        reached = found.residual <= self.residual
-        words = "to" if reached else f"NOT to {self.residual:g}, stopped at"
-        return f"cold {words} {found.residual:.1e} in {found.iterations} iterations"
+        words = "cold to" if found.residual <= self.residual else "cold, NOT REACHED:"
+        return (
+            f"{words} {self.residual:g}, residual {found.residual:.1e} in "
+            f"{found.iterations} iterations"
+        )
 
 
 def _own(solver: Solver) -> peers.Engine:
@@ -129,9 +134,9 @@ def _engines(case: str, bench: Bench, shape: Cylinder, rest_ratio: float) -> Ite
         version = peer.version()
         if version is not None and len(cords.springs) <= peer.largest:
             engines[f"{peer.distribution} {version}"] = (peer.engine, peer.law)
+    limit = min(bench.effort.seconds, LIMIT) * max(1.0, len(cords.springs) / MOST_IMPLICIT)
     watched = {
-        name: _Watched(engine, cords, PEER_RESIDUAL, bench.effort.seconds)
-        for name, (engine, _) in engines.items()
+        name: _Watched(engine, cords, PEER_RESIDUAL, limit) for name, (engine, _) in engines.items()
     }
     effort = replace(bench.effort, rounds=min(MOST_ROUNDS, bench.effort.rounds))
     net = f"{shape}, rest {rest_ratio:g}, all engines"

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..network import Floats
+from ..arrays import Floats
 from .nets import Cords, relative_residual, spring_lengths
 
 ANCHOR_WEIGHT = 1e8

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..errors import SpringformError
-from ..network import Floats, Network
+from ..network import Network
 from .timing import Timed
 
 LIBRARY = "SPRINGFORM_REFERENCE"

@@ -2,12 +2,13 @@
 //!
 //! Barnes, "Form finding and analysis of tension structures by dynamic relaxation", International Journal of Space
 //! Structures 14(2), 1999. Nodes get fictitious masses, move freely under the forces out of balance, and stop
-//! dead whenever their kinetic energy has passed a peak. Springs are worked on several at a time, in lanes, so that the
-//! compiler can use vector instructions.
+//! dead whenever their kinetic energy has passed a peak. Springs are worked on several at a time, in lanes, by code that
+//! is compiled for the processor's vector units (crate `pulp`).
 
 use super::state::{Equilibrium, Method, Settings, Status, unheld_node};
 use super::tangent::own_stiffness;
 use crate::network::{Network, Sense};
+use pulp::{Arch, NullaryFnOnce};
 
 /// Springs worked on at a time.
 const LANES: usize = 8;
@@ -26,10 +27,10 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
     if let Some(node) = unheld_node(network) {
         return Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
     }
-    let mut net = Relaxation::new(network);
+    let (mut net, arch) = (Relaxation::new(network), Arch::new());
     let mut steps = 0;
     loop {
-        net.pull();
+        arch.dispatch(Pull(&mut net));
         let calm = net.largest_unbalanced() <= settings.tolerance * net.mean_force;
         if calm || steps >= settings.iterations || !net.kinetic.is_finite() {
             let result = Equilibrium::at(network, net.vectors(), Status::Converged, steps);
@@ -41,7 +42,10 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
                 return Equilibrium { status: Status::IterationLimit, ..result };
             }
         }
-        net.advance(network);
+        arch.dispatch(Advance(&mut net));
+        if net.at_rest {
+            net.weigh(network);
+        }
         steps += 1;
     }
 }
@@ -112,6 +116,7 @@ impl Relaxation {
     }
 
     /// Sums forces out of balance.
+    #[inline(always)]
     fn pull(&mut self) {
         self.unbalanced.copy_from_slice(&self.loads);
         let mut total = [0.0; LANES];
@@ -130,7 +135,8 @@ impl Relaxation {
     }
 
     /// Makes one time step, or stops the net where its kinetic energy was largest.
-    fn advance(&mut self, network: &Network<'_>) {
+    #[inline(always)]
+    fn advance(&mut self) {
         let share = if self.at_rest { 0.5 } else { 1.0 };
         let mut kinetic = [0.0; LANES];
         let coordinates = self.velocity.chunks_mut(LANES).zip(self.position.chunks_mut(LANES));
@@ -155,11 +161,32 @@ impl Relaxation {
             self.velocity[at] = 0.0;
         }
         (self.kinetic, self.at_rest) = (0.0, true);
-        self.weigh(network);
     }
 
     fn vectors(&self) -> Vec<[f64; 3]> {
         self.position.as_chunks().0.to_vec()
+    }
+}
+
+struct Pull<'a>(&'a mut Relaxation);
+
+impl NullaryFnOnce for Pull<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.pull();
+    }
+}
+
+struct Advance<'a>(&'a mut Relaxation);
+
+impl NullaryFnOnce for Advance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.advance();
     }
 }
 
@@ -178,6 +205,7 @@ impl Lanes {
     }
 
     /// Adds the pull of these springs at their ends, and the size of their forces to `total`.
+    #[inline(always)]
     fn pull(&self, position: &[f64], unbalanced: &mut [f64], total: &mut [f64; LANES]) {
         let mut along = [[0.0; LANES]; 3];
         for (lane, ends) in self.ends.iter().enumerate() {
