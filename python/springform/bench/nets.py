@@ -231,7 +231,8 @@ def large_design(springs: int) -> Design:
             )
     text = "\n".join(
         [
-            'springform = 1\nname = "large"\nmethod = "dynamic"\n\n[framework]\ngrid = "dia"\nlevel = 1\n',
+            'springform = 1\nname = "large"\nmethod = "dynamic"\n',
+            '[framework]\ngrid = "dia"\nlevel = 1\n',
             f'[[framework.cylinders]]\nname = "tube"\naround = {around}\nalong = {along}\n',
             *anchors,
             "[forest.cells]",
