@@ -133,6 +133,7 @@ def growth(case: str, bench: Bench) -> Iterator[Row]:
         population=POPULATION,
         generations=bench.count(300),
         types=DYNAMIC.types,
+        insertions="1",
         seed=1,
         threads=threads,
         on_generation=lambda _: times.append(time.perf_counter()),

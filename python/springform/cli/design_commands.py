@@ -77,7 +77,7 @@ def solve_command(
         Path | None, typer.Option(help="Folder for nodes.csv, springs.csv, measures.json, net.obj.")
     ] = None,
     solver: Annotated[
-        str, typer.Option(help="direct; implicit-euler: step by step as the paper does; dynamic-relaxation.")
+        str, typer.Option(help="direct; implicit-euler, as the paper does; or dynamic-relaxation.")
     ] = "direct",
     tolerance: Annotated[
         float, typer.Option(help="Largest residual over the mean spring force.")
