@@ -169,6 +169,7 @@ proptest! {
         parameters.criterion.fitness = Fitness::Differential;
         parameters.criterion.niche = None;
         parameters.criterion.min_length = None;
+        (parameters.criterion.min_springs, parameters.criterion.max_springs) = (None, None);
         let mut evolution = begin(&start, &parameters, runs::strategy(&mut dice), 1);
         let mut best = evolution.parent().measures.force_differential;
         for _ in 0..GENERATIONS {
