@@ -59,10 +59,11 @@ def test_evolved_scenes_agree_with_scipy(scene: str) -> None:
     np.testing.assert_allclose(equilibrium.positions, scipy_equilibrium(network), atol=1e-9)
 
 
+@pytest.mark.parametrize("solver", ["implicit-euler", "dynamic-relaxation"])
 @pytest.mark.parametrize("scene", sf.scene_names())
-def test_the_animated_solver_reaches_the_same_equilibrium(scene: str) -> None:
+def test_solvers_by_steps_reach_the_same_equilibrium(scene: str, solver: sf.network.Solver) -> None:
     network = moved(evolved(scene).network(), seed=1)
-    direct, animated = sf.solve(network), sf.solve(network, solver="implicit-euler")
+    direct, animated = sf.solve(network), sf.solve(network, solver=solver)
     assert animated.converged
     assert animated.iterations > 3
     np.testing.assert_allclose(animated.positions, direct.positions, atol=1e-6)
@@ -102,6 +103,12 @@ def test_rest_lengths_agree_between_newton_and_the_animated_solver() -> None:
     assert direct.converged
     assert animated.converged
     np.testing.assert_allclose(animated.positions, direct.positions, atol=1e-6)
+
+
+def test_dynamic_relaxation_refuses_what_it_does_not_know() -> None:
+    network = sf.Network([[0, 0, 0], [1, 0, 0]], [[0, 1]], [0], self_weight=1.0)
+    with pytest.raises(sf.InputError, match="dynamic-relaxation knows no rods"):
+        sf.solve(network, solver="dynamic-relaxation")
 
 
 def test_a_net_that_nothing_holds_says_which_node() -> None:

@@ -254,10 +254,11 @@ def solve(
     """Solve a network; the interpreter lock is free meanwhile.
 
     "direct" factors stiffness matrices, and chooses its method by the net; "implicit-euler" moves
-    the net step by step, as the paper does (footnote 1), and "dynamic-relaxation" by explicit
-    steps with kinetic damping. `start` are positions to start at instead of the network's, such as
-    a neighbour's equilibrium. A net that finds no equilibrium is no error: see `converged` and
-    `reason`. Raises `InputError`: the network or solver is refused.
+    the net step by step, as the paper does (footnote 1), "dynamic-relaxation" by explicit steps
+    with kinetic damping, for springs without curves and dead loads only. `start` are positions to
+    start at instead of the network's, such as a neighbour's equilibrium. A net that finds no
+    equilibrium is no error: see `converged` and `reason`. Raises `InputError`: the network or
+    solver is refused.
     """
     if solver not in _ITERATIONS:
         known = ", ".join(_ITERATIONS)

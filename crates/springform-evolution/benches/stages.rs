@@ -8,7 +8,7 @@ use springform_evolution::draws::Draws;
 use springform_evolution::mutation::{Candidates, Palette, Strategy, mutate};
 use springform_evolution::selection::WeightingParameters;
 use springform_mechanics::assembly::assemble;
-use springform_mechanics::equilibrium::{Settings, dynamic_relaxation, implicit_euler, solve};
+use springform_mechanics::equilibrium::{Settings, Solver, dynamic_relaxation, implicit_euler, solve};
 use springform_mechanics::measures::Measures;
 use springform_mechanics::network::Network;
 use springform_mechanics::sparse::{Graph, ScalarFactor, Symbolic};
@@ -79,11 +79,10 @@ fn topology(bench: &mut Criterion) {
 fn mechanics(bench: &mut Criterion) {
     let net = Net::new(Method::Dynamic);
     let (expression, network) = net.setting.grow(&net.forest).expect("the scene gives a net");
-    let Laplacian { graph, diagonal, links } = Laplacian::new(&network);
+    let (graph, diagonal, links) = laplacian(&network);
     let (mut symbolic, mut factor) = (Symbolic::default(), ScalarFactor::default());
     symbolic.build(&graph);
     factor.lay_out(&graph, &symbolic);
-    factor.factor(&graph, &symbolic, &diagonal, &links).expect("a held net");
     let settings = Settings::default();
     let equilibrium = solve(&network, &settings);
     bench.bench_function("assemble", |bencher| {
@@ -91,23 +90,21 @@ fn mechanics(bench: &mut Criterion) {
     });
     bench.bench_function("order and analyse", |bencher| {
         bencher.iter(|| {
-            let mut symbolic = Symbolic::default();
             symbolic.build(&graph);
-            symbolic
+            factor.lay_out(&graph, &symbolic);
         });
     });
     bench.bench_function("factor", |bencher| {
-        let mut factor = factor.clone();
         bencher.iter(|| factor.factor(&graph, &symbolic, &diagonal, &links));
     });
     bench.bench_function("solve", |bencher| {
-        bencher.iter_batched_ref(
-            || vec![[1.0, 2.0, 3.0, 0.0]; graph.rows()],
-            |sides| factor.solve(sides),
-            BatchSize::SmallInput,
-        );
+        let sides = || vec![[1.0, 2.0, 3.0, 0.0]; graph.rows()];
+        bencher.iter_batched_ref(sides, |sides| factor.solve(sides), BatchSize::SmallInput);
     });
-    bench.bench_function("linear equilibrium", |bencher| bencher.iter(|| solve(&network, &settings)));
+    let mut solver = Solver::default();
+    bench.bench_function("linear equilibrium", |bencher| {
+        bencher.iter(|| solver.solve(&network, &settings));
+    });
     bench.bench_function("measure", |bencher| {
         bencher.iter(|| Measures::new(&expression, &network, &equilibrium.positions, &equilibrium.forces));
     });
@@ -116,7 +113,8 @@ fn mechanics(bench: &mut Criterion) {
 fn cords(bench: &mut Criterion) {
     let cords = Net::new(Method::Dynamic).cords();
     let settings = Settings { tolerance: 1e-6, iterations: 100_000 };
-    bench.bench_function("cords/direct", |bencher| bencher.iter(|| solve(&cords, &settings)));
+    let mut solver = Solver::default();
+    bench.bench_function("cords/direct", |bencher| bencher.iter(|| solver.solve(&cords, &settings)));
     bench.bench_function("cords/dynamic relaxation", |bencher| {
         bencher.iter(|| dynamic_relaxation::solve(&cords, &settings));
     });
@@ -138,28 +136,22 @@ fn individuals(bench: &mut Criterion) {
     }
 }
 
-/// The Laplacian of a network over its free nodes.
-struct Laplacian {
-    graph: Graph,
-    diagonal: Vec<f64>,
-    links: Vec<f64>,
-}
-
-impl Laplacian {
-    fn new(network: &Network<'_>) -> Laplacian {
-        let mut rows = vec![Graph::OUTSIDE; network.fixed.len()];
-        let free = (0..rows.len()).filter(|&node| !network.fixed[node][0]);
-        free.enumerate().for_each(|(row, node)| rows[node] = row as u32);
-        let ends = || network.springs.iter().map(|ends| ends.map(|node| rows[node as usize]));
-        let free = || ends().flatten().filter(|&row| row != Graph::OUTSIDE);
-        let mut diagonal = vec![0.0; free().max().map_or(0, |row| row as usize + 1)];
-        for (ends, &k) in ends().zip(network.stiffness.iter()) {
-            ends.into_iter().filter(|&row| row != Graph::OUTSIDE).for_each(|row| diagonal[row as usize] += k);
-        }
-        let mut graph = Graph::default();
-        graph.build(diagonal.len(), ends());
-        Laplacian { graph, diagonal, links: network.stiffness.iter().map(|k| -k).collect() }
+/// The Laplacian of a network over its free nodes: graph, diagonal, and an entry a spring.
+fn laplacian(network: &Network<'_>) -> (Graph, Vec<f64>, Vec<f64>) {
+    let mut rows = vec![Graph::OUTSIDE; network.fixed.len()];
+    let free = (0..rows.len()).filter(|&node| !network.fixed[node][0]);
+    free.enumerate().for_each(|(row, node)| rows[node] = row as u32);
+    let links: Vec<[u32; 2]> =
+        network.springs.iter().map(|ends| ends.map(|node| rows[node as usize])).collect();
+    let size = rows.iter().filter(|&&row| row != Graph::OUTSIDE).count();
+    let mut graph = Graph::default();
+    graph.build(size, links.iter().copied());
+    let mut diagonal = vec![0.0; size];
+    for (link, &k) in links.iter().zip(network.stiffness.iter()) {
+        let inside = link.iter().filter(|&&row| row != Graph::OUTSIDE);
+        inside.for_each(|&row| diagonal[row as usize] += k);
     }
+    (graph, diagonal, network.stiffness.iter().map(|k| -k).collect())
 }
 
 criterion_group!(stages, topology, mechanics, cords, individuals);

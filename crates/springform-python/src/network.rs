@@ -171,6 +171,11 @@ pub fn solve<'py>(
         "implicit-euler" => {
             py.detach(|| implicit_euler::solve(&network, &settings, implicit_euler::Motion::default()))
         }
+        "dynamic-relaxation" if !dynamic_relaxation::suits(&network) => {
+            let problem =
+                "dynamic-relaxation knows no rods, curves, slides and loads that follow; use another";
+            return Err(refusal("solver", problem));
+        }
         "dynamic-relaxation" => py.detach(|| dynamic_relaxation::solve(&network, &settings)),
         _ => return Err(refusal("solver", format!("unknown solver '{solver}'"))),
     };

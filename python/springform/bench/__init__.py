@@ -88,14 +88,23 @@ def run(
 
     With `out`, each case's rows are written to OUT/MACHINE/CASE.csv as soon as it is done, whole or
     not at all; `label` says there which code was timed. Raises `InputError`: an unknown case, or
-    a folder that can't be written.
+    a folder that can't be written; both before anything is measured.
     """
     cases = chosen(names)
     folder = None if out is None else _folder(Path(out) / machine.slug())
-    settings = Bench() if bench is None else bench
+    return _measured(cases, Bench() if bench is None else bench, folder, label, on_row)
+
+
+def _measured(
+    cases: Sequence[str],
+    bench: Bench,
+    folder: Path | None,
+    label: str,
+    on_row: Callable[[Row], None],
+) -> Iterator[Result]:
     wholes: list[Row] = []
     for case in cases:
-        rows = list(_told(CASES[case](case, settings), on_row))
+        rows = list(_told(CASES[case](case, bench), on_row))
         if case.startswith("large-"):
             wholes += rows
             rows += _told(large.exponent(wholes), on_row)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ..network import Solver, solve
 from . import peers
 from .comparison import Bench
 from .nets import Cords, Cylinder, child_of, relative_residual
 from .records import Row
-from .timing import Timed, ratio, seconds_of
+from .timing import Timed, clocked, ratio, sampled
 
 REST_RATIOS = (0.6, 0.3, 0.9, 0.98)
 """Rest length over drawn length: well stressed, strongly, weakly, all but slack."""
@@ -23,6 +24,9 @@ CHILDREN = 8
 
 PEER_RESIDUAL = 1e-6
 """Residual at which engines are compared: not all of them reach 1e-9."""
+
+LIMIT = 5.0
+"""Seconds after which an engine is given up, up to 20,000 springs; in proportion beyond."""
 
 MOST_ROUNDS = 5
 """Most rounds with all engines: the slow ones take seconds."""
@@ -62,9 +66,11 @@ class _Watched:
     def note(self) -> str:
         assert self.outcome is not None
         found = self.outcome
-        reached = found.residual <= self.residual
-        words = "to" if reached else f"NOT to {self.residual:g}, stopped at"
-        return f"cold {words} {found.residual:.1e} in {found.iterations} iterations"
+        words = "cold to" if found.residual <= self.residual else "cold, NOT REACHED:"
+        return (
+            f"{words} {self.residual:g}, residual {found.residual:.1e} in "
+            f"{found.iterations} iterations"
+        )
 
 
 def _own(solver: Solver) -> peers.Engine:
@@ -89,7 +95,8 @@ def _cold(case: str, bench: Bench, shape: Cylinder, rest_ratio: float) -> Iterat
         for tolerance in TOLERANCES
     }
     net = f"{shape}, rest {rest_ratio:g}"
-    compared = bench.compare(case, net, cords.network(), watched)
+    timed = {name: sampled(one, bench.effort) for name, one in watched.items()}
+    compared = bench.compare(case, net, cords.network(), timed)
     for tolerance, one in watched.items():
         yield compared.row("springform", one.note(), tolerance)
     yield from compared.reference_row()
@@ -101,11 +108,10 @@ def _warm(case: str, bench: Bench, shape: Cylinder) -> Iterator[Row]:
     children = [child_of(shape, parent, start, seed).network() for seed in range(CHILDREN)]
 
     def all_children(tolerance: float) -> Timed:
-        def work() -> None:
-            for child in children:
-                solve(child, tolerance=tolerance)
-
-        return lambda: seconds_of(work) / CHILDREN
+        one_each = [
+            clocked(partial(solve, child, tolerance=tolerance), bench.effort) for child in children
+        ]
+        return lambda: sum(child() for child in one_each) / CHILDREN
 
     timed = {f"{tolerance:g}": all_children(tolerance) for tolerance in TOLERANCES}
     compared = bench.compare(case, f"{shape}, rest 0.6", children[0], timed)
@@ -129,13 +135,14 @@ def _engines(case: str, bench: Bench, shape: Cylinder, rest_ratio: float) -> Ite
         version = peer.version()
         if version is not None and len(cords.springs) <= peer.largest:
             engines[f"{peer.distribution} {version}"] = (peer.engine, peer.law)
+    limit = min(bench.effort.seconds, LIMIT) * max(1.0, len(cords.springs) / MOST_IMPLICIT)
     watched = {
-        name: _Watched(engine, cords, PEER_RESIDUAL, bench.effort.seconds)
-        for name, (engine, _) in engines.items()
+        name: _Watched(engine, cords, PEER_RESIDUAL, limit) for name, (engine, _) in engines.items()
     }
     effort = replace(bench.effort, rounds=min(MOST_ROUNDS, bench.effort.rounds))
     net = f"{shape}, rest {rest_ratio:g}, all engines"
-    compared = bench.compare(case, net, cords.network(), watched, effort)
+    timed = {name: sampled(one, effort) for name, one in watched.items()}
+    compared = bench.compare(case, net, cords.network(), timed, effort)
     for name, one in watched.items():
         yield compared.row(name, f"{one.note()}; {engines[name][1]}")
     for name in list(watched)[1:]:

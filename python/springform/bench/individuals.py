@@ -6,20 +6,19 @@ import itertools
 import multiprocessing
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from multiprocessing.synchronize import Barrier
 
 from .. import _core
 from ..design import Design
-from ..network import Network, solve
 from ..parameters import checked_parameters
 from ..run import start_evolution
 from . import machine, scikit_sparse
 from .comparison import Bench
 from .nets import evolved
 from .records import Row
-from .timing import Spread, Timed, clocked, interleaved, ratio, seconds_of
+from .timing import Spread, Timed, interleaved, ratio, seconds_of
 
 SCENE = "three-cylinders"
 
@@ -58,7 +57,7 @@ def generation(
 
 
 def individual(case: str, bench: Bench) -> Iterator[Row]:
-    """Time complete individuals of about 2,000 and 3,000 springs, and their parts."""
+    """Time complete individuals of about 2,000 and 3,000 springs, and their stages."""
     for springs in (2000, 3000):
         for kind in (DYNAMIC, RECURSIVE):
             design = kind.design(bench.springs(springs))
@@ -91,22 +90,29 @@ def _whole(case: str, bench: Bench, kind: Kind, design: Design) -> Iterator[Row]
 
 
 def _stages(case: str, bench: Bench, kind: Kind, design: Design) -> Iterator[Row]:
-    """The parts of one evaluation as Python reaches them, conversions included."""
-    setting, forest = design.setting, design.closed.forest
-    net, arrays = setting.grow(forest)
-    network = Network(**arrays)
-    found = solve(network)
-    stages = {
-        "filter": lambda: setting.closed(forest),
-        "nodes and springs": lambda: setting.grow(forest),
-        "order, factor, solve": lambda: solve(network),
-        "measure": lambda: net.measure(network, found.positions, found.forces),
-    }
-    timed = {name: clocked(work, bench.effort) for name, work in stages.items()}
-    words = f"{SCENE}, {kind.words}, part by part"
-    compared = bench.compare(case, words, network, timed)
-    for name in stages:
-        yield compared.row(f"springform {name}", "called from Python, conversions included", name)
+    """The stages of mutants that are made one after the other, as the core sees them end."""
+    count = bench.count(POPULATION)
+    evolution = generation(design, kind, population=count, seed=1, threads=1)
+    spent: dict[str, list[float]] = {}
+
+    def mutants() -> float:
+        found = evolution.stages(count, 1)
+        for stage, seconds in found.items():
+            spent.setdefault(stage, []).append(float(seconds[0]) / count)
+        return sum(seconds[-1] for seconds in spent.values())
+
+    net = f"{SCENE}, {kind.words}, stage by stage"
+    compared = bench.compare(case, net, design.network(), {"springform": mutants})
+    # The rounds that count are the last ones: the first warms up.
+    rounds = len(compared.seconds["springform"])
+    stages = {stage: seconds[-rounds:] for stage, seconds in spent.items() if any(seconds)}
+    compared = replace(compared, seconds={**compared.seconds, **stages})
+    yield compared.row("springform", "all stages, one mutant after the other, 1 thread")
+    for stage in stages:
+        # Stages that the solver does not tell apart count as the next one that it does.
+        merged = [name for name in spent if name not in stages] if stage == "solve" else []
+        note = f"with {' and '.join(merged)}" if merged else ""
+        yield compared.row(f"springform, {stage}", note, stage)
 
 
 # --- threads ------------------------------------------------------------------------------------

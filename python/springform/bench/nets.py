@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..design import Design, load
 from ..design_file import parse
 from ..evolution import evolve
-from ..arrays import Floats
 from ..network import Network
 
 Whole = NDArray[np.int64]
@@ -216,6 +216,8 @@ def large_design(springs: int) -> Design:
             children = ["6", "6", "6", "6"]
         elif draw == 1:
             children[random.integers(0, 4)] = "1(1 1 1 1)"
+        else:
+            continue
         cells.append(f'{face} = "1({" ".join(children)})"')
     anchors = []
     for end, height in (("start", 0.0), ("end", float(along))):
@@ -229,7 +231,8 @@ def large_design(springs: int) -> Design:
             )
     text = "\n".join(
         [
-            'springform = 1\nname = "large"\nmethod = "dynamic"\n\n[framework]\ngrid = "dia"\n',
+            'springform = 1\nname = "large"\nmethod = "dynamic"\n',
+            '[framework]\ngrid = "dia"\nlevel = 1\n',
             f'[[framework.cylinders]]\nname = "tube"\naround = {around}\nalong = {along}\n',
             *anchors,
             "[forest.cells]",
@@ -249,8 +252,8 @@ def relative_residual(network: Network, positions: Floats) -> float:
     """Return the largest force out of balance at a free node over the mean spring force.
 
     Written anew in NumPy, so that every engine is judged by the same code, which is none of theirs.
-    In a net that is all but slack the force of a strain of 1e-6 stands for the mean, as in
-    `springform.solve`.
+    In a net that is all but slack a millionth of what a spring would carry if it were stretched by
+    the whole net stands for the mean, as in `springform.solve`.
     """
     ends = network.springs.astype(np.int64)
     along = positions[ends[:, 1]] - positions[ends[:, 0]]
@@ -263,5 +266,8 @@ def relative_residual(network: Network, positions: Floats) -> float:
         sums[:, axis] = np.bincount(ends[:, 0], pull[:, axis], nodes)
         sums[:, axis] -= np.bincount(ends[:, 1], pull[:, axis], nodes)
     free = ~network.fixed
-    scale = max(np.abs(forces).mean(), 1e-6 * (network.stiffness * network.rest_length).max())
+    held = network.positions[network.fixed]
+    span = (held.max(axis=0) - held.min(axis=0)).max()
+    stretched = (network.stiffness * np.maximum(network.rest_length, span)).max()
+    scale = max(np.abs(forces).mean(), 1e-6 * stretched)
     return float(np.linalg.norm(sums[free], axis=1).max() / scale)

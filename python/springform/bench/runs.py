@@ -86,8 +86,8 @@ def paper(case: str, bench: Bench, wanted: Paper) -> Iterator[Row]:
             over = Spread.of([each / statistics.median(watch.reference_seconds)])
             name = f"{judge.name} an individual and thread"
         note = (
-            f"{individuals} individuals, {100 * watch.outside / watch.seen:.1f} % outside "
-            f"{wanted.springs - wanted.margin} to {wanted.springs + wanted.margin} springs, run folder written; digest "
+            f"{individuals} individuals, {100 * watch.outside / watch.seen:.2f} % more than "
+            f"{wanted.margin} springs off {wanted.springs}, run folder written; digest "
             f"{digests[threads][:12]}, {'the same' if same else 'NOT THE SAME'} on any threads; "
             f"the paper took {wanted.hours} on twelve logical cores"
         )
@@ -133,6 +133,7 @@ def growth(case: str, bench: Bench) -> Iterator[Row]:
         population=POPULATION,
         generations=bench.count(300),
         types=DYNAMIC.types,
+        insertions="1",
         seed=1,
         threads=threads,
         on_generation=lambda _: times.append(time.perf_counter()),

@@ -51,21 +51,24 @@ class Effort:
     """Shortest sample [s]: shorter work is repeated within a round."""
 
 
-def clocked(work: Callable[[], object], effort: Effort) -> Timed:
-    """Return a timer of `work`; short work is repeated until a sample is long enough."""
-    repeats: int | None = None
+def sampled(once: Timed, effort: Effort) -> Timed:
+    """Return a timer that repeats short work until a sample is long enough, and takes the median.
+
+    The median of many short pieces of work passes over those that other programs interrupted.
+    """
 
     def sample() -> float:
-        nonlocal repeats
-        if repeats is None:
-            once = seconds_of(work)
-            repeats = max(1, round(effort.sample / max(once, 1e-7)))
-        began = time.perf_counter()
-        for _ in range(repeats):
-            work()
-        return (time.perf_counter() - began) / repeats
+        seconds = [once()]
+        while sum(seconds) < effort.sample:
+            seconds.append(once())
+        return statistics.median(seconds)
 
     return sample
+
+
+def clocked(work: Callable[[], object], effort: Effort) -> Timed:
+    """Return a timer of `work`, sampled."""
+    return sampled(lambda: seconds_of(work), effort)
 
 
 def seconds_of(work: Callable[[], object]) -> float:

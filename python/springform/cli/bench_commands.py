@@ -41,12 +41,6 @@ def bench_command(
     settings = bench.Bench()
     if quick:
         settings = replace(settings, quick=True, effort=bench.Effort(2, 1, 1.0, 0.001))
-    if not reference.available():
-        say(
-            "the reference has not been built, so there are no ratios: `make bench` builds it, "
-            "or see bench/README.md"
-        )
-
     shown = ""
 
     def show(row: bench.Row) -> None:
@@ -57,9 +51,12 @@ def bench_command(
         if not as_json:
             print(row.line(), flush=True)
 
+    results = bench.run(names, bench=settings, out=out, label=label, on_row=show)
+    if not reference.available():
+        say("no ratios: the reference has not been built, which `make bench` does")
     found: dict[str, list[dict[str, object]]] = {}
     try:
-        for result in bench.run(names, bench=settings, out=out, label=label, on_row=show):
+        for result in results:
             found[result.case] = [row.report() for row in result.rows]
             if result.path is not None:
                 say(f"wrote {result.path}")

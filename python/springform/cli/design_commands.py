@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_args
 
 import typer
 
@@ -15,7 +15,7 @@ from ..errors import InputError, SpringformError
 from ..evolution import seek
 from ..exchange.obj import design_from_obj
 from ..files import WriteError
-from ..network import TOLERANCE
+from ..network import TOLERANCE, Solver
 from ..run import Run, open_run
 from ..run_format import is_run
 from .terminal import (
@@ -77,7 +77,7 @@ def solve_command(
         Path | None, typer.Option(help="Folder for nodes.csv, springs.csv, measures.json, net.obj.")
     ] = None,
     solver: Annotated[
-        str, typer.Option(help="direct, or implicit-euler: step by step as the paper does.")
+        str, typer.Option(help="direct; implicit-euler, as the paper does; or dynamic-relaxation.")
     ] = "direct",
     tolerance: Annotated[
         float, typer.Option(help="Largest residual over the mean spring force.")
@@ -87,8 +87,9 @@ def solve_command(
     """Grow the net of a design and find its equilibrium."""
     if not 0 < tolerance < 1:
         raise InputError(f"must be between 0 and 1, not {tolerance}", key="--tolerance")
-    if solver not in ("direct", "implicit-euler"):
-        raise InputError(f"must be direct or implicit-euler, not {solver}", key="--solver")
+    if solver not in get_args(Solver):
+        known = ", ".join(get_args(Solver))
+        raise InputError(f"must be one of {known}, not {solver}", key="--solver")
     began = time.perf_counter()
     net = load(design)
     equilibrium = net.solve(tolerance=tolerance, solver=solver)  # type: ignore[arg-type]

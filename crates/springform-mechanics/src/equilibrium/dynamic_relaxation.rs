@@ -2,37 +2,37 @@
 //!
 //! Barnes, "Form finding and analysis of tension structures by dynamic relaxation", International Journal of Space
 //! Structures 14(2), 1999. Nodes get fictitious masses, move freely under the forces out of balance, and stop
-//! dead whenever their kinetic energy has passed a peak.
+//! dead whenever their kinetic energy has passed a peak. Springs are worked on several at a time, in lanes, by code that
+//! is compiled for the processor's vector units (crate `pulp`).
 
-use super::descent::Hill;
-use super::elements::{Elements, vector};
-use super::followers::follow;
-use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
-use super::supports::Supports;
-use super::tangent::{Layout, along, own_bend_stiffness, own_stiffness};
-use crate::network::Network;
-use crate::sparse::Lanes;
-use crate::vector::{Vector, length};
+use super::state::{Equilibrium, Method, Settings, Status, unheld_node};
+use super::tangent::own_stiffness;
+use crate::network::{Network, Sense};
+use pulp::{Arch, NullaryFnOnce};
+
+/// Springs worked on at a time.
+const LANES: usize = 8;
 
 /// Factor on the masses that stand on the bound of stability, for what changes between two peaks.
 const SAFETY: f64 = 1.05;
 
-/// Moves a network that passes [`Network::check`] to equilibrium; `settings.iterations` counts time steps.
+/// Whether a network has nothing but springs without curves, dead loads and nodes that are held along axes.
+pub fn suits(network: &Network<'_>) -> bool {
+    let plain = network.rods.is_empty() && network.slides.is_empty() && !network.has_followers();
+    plain && (0..network.springs.len()).all(|spring| network.curve_of(spring).is_none())
+}
+
+/// Moves a network that passes [`Network::check`] and [`suits`] to equilibrium; `settings.iterations` counts time steps.
 pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
     if let Some(node) = unheld_node(network) {
         return Equilibrium::at(network, network.positions.to_vec(), Status::Unheld { node }, 0);
     }
-    let supports = Supports::from(network);
-    let mut elements = Elements::default();
-    elements.build(network, &[]);
-    let layout = Layout::default();
-    let least_force = least_force_scale(network);
-    let hill = Hill { network, elements: &elements, supports: &supports, layout: &layout, least_force };
-    let mut net = Relaxation::new(hill);
+    let (mut net, arch) = (Relaxation::new(network), Arch::new());
     let mut steps = 0;
     loop {
-        let residual = net.pull(hill);
-        if residual <= settings.tolerance || steps >= settings.iterations || !net.kinetic.is_finite() {
+        arch.dispatch(Pull(&mut net));
+        let calm = net.largest_unbalanced() <= settings.tolerance * net.mean_force;
+        if calm || steps >= settings.iterations || !net.kinetic.is_finite() {
             let result = Equilibrium::at(network, net.vectors(), Status::Converged, steps);
             let result = Equilibrium { method: Method::DynamicRelaxation, ..result };
             if result.residual <= settings.tolerance || result.status != Status::Converged {
@@ -42,87 +42,109 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
                 return Equilibrium { status: Status::IterationLimit, ..result };
             }
         }
-        net.advance(hill);
+        arch.dispatch(Advance(&mut net));
+        if net.at_rest {
+            net.weigh(network);
+        }
         steps += 1;
     }
 }
 
-/// A net in motion; time steps are of length one.
+/// A net in motion. Coordinates stand in one row, x y z x y z …; time steps are of length one.
 struct Relaxation {
-    positions: Vec<Lanes>,
-    velocities: Vec<Lanes>,
-    pulls: Vec<Lanes>,
-    /// One over the mass of every node [m/N].
+    springs: Vec<Lanes>,
+    /// Number of springs, at least 1.
+    count: f64,
+    /// Loads [N].
+    loads: Vec<f64>,
+    /// One over the mass of every coordinate [m/N]; zero where it is held.
     mobility: Vec<f64>,
-    /// Loads that follow the shape [N]; empty if there are none.
-    following: Vec<Vector>,
+    /// Which coordinates are free.
+    free: Vec<bool>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    unbalanced: Vec<f64>,
+    mean_force: f64,
     kinetic: f64,
     /// The next step starts from rest.
     at_rest: bool,
 }
 
+/// The ends and laws of several springs; lanes left over hold springs of no stiffness.
+struct Lanes {
+    ends: [[u32; 2]; LANES],
+    stiffness: [f64; LANES],
+    /// Force at length zero [N].
+    offset: [f64; LANES],
+    /// Bounds of the force by the spring's sense [N].
+    least: [f64; LANES],
+    most: [f64; LANES],
+}
+
 impl Relaxation {
-    fn new(hill: Hill<'_>) -> Self {
-        let positions: Vec<Lanes> = hill.network.positions.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+    fn new(network: &Network<'_>) -> Self {
+        let springs: Vec<usize> = (0..network.springs.len()).collect();
+        let position: Vec<f64> = network.positions.iter().flatten().copied().collect();
         let mut net = Relaxation {
-            velocities: vec![[0.0; 4]; positions.len()],
-            pulls: Vec::new(),
+            count: springs.len().max(1) as f64,
+            springs: springs.chunks(LANES).map(|some| Lanes::new(network, some)).collect(),
+            loads: network.loads.iter().flatten().copied().collect(),
             mobility: Vec::new(),
-            following: if hill.network.has_followers() {
-                vec![[0.0; 3]; positions.len()]
-            } else {
-                Vec::new()
-            },
-            positions,
+            free: network.fixed.iter().flatten().map(|&held| !held).collect(),
+            velocity: vec![0.0; position.len()],
+            unbalanced: vec![0.0; position.len()],
+            position,
+            mean_force: 0.0,
             kinetic: 0.0,
             at_rest: true,
         };
-        net.weigh(hill);
+        net.weigh(network);
         net
     }
 
-    /// Gives every node the least mass at which steps of length one are stable: half the sum of its springs' stiffness.
-    fn weigh(&mut self, hill: Hill<'_>) {
-        let mut masses = vec![0.0; self.positions.len()];
-        for (spring, ends) in hill.network.springs.iter().enumerate() {
-            let size = length(along(hill.network, spring, &self.positions));
-            let own = 0.5 * SAFETY * own_stiffness(hill.network, spring, size);
+    /// Gives every coordinate the least mass at which steps of length one are stable: half the sum of its springs' stiffness.
+    fn weigh(&mut self, network: &Network<'_>) {
+        let mut masses = vec![0.0; network.positions.len()];
+        let lengths = network.lengths(&self.vectors());
+        for (spring, ends) in network.springs.iter().enumerate() {
+            let own = 0.5 * SAFETY * own_stiffness(network, spring, lengths[spring]);
             ends.iter().for_each(|&node| masses[node as usize] += own);
         }
-        for bend in &hill.elements.bends {
-            // A bend turns both links: its middle node takes four times the share of an end.
-            let own = 4.0 * SAFETY * own_bend_stiffness(bend);
-            bend.nodes.iter().for_each(|&node| masses[node as usize] += own);
-        }
-        let mobility = masses.into_iter().map(|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 });
-        self.mobility.clear();
-        self.mobility.extend(mobility);
+        let masses = masses.iter().flat_map(|&mass| [mass; 3]).zip(&self.free);
+        self.mobility =
+            masses.map(|(mass, &free)| if free && mass > 0.0 { 1.0 / mass } else { 0.0 }).collect();
     }
 
-    /// Sums forces out of balance; the largest over the mean spring force.
-    fn pull(&mut self, hill: Hill<'_>) -> f64 {
-        let (state, residual) = hill.look(&self.positions, &mut self.pulls);
-        if self.following.is_empty() {
-            return residual;
+    /// Sums forces out of balance.
+    #[inline(always)]
+    fn pull(&mut self) {
+        self.unbalanced.copy_from_slice(&self.loads);
+        let mut total = [0.0; LANES];
+        for lanes in &self.springs {
+            lanes.pull(&self.position, &mut self.unbalanced, &mut total);
         }
-        self.following.fill([0.0; 3]);
-        follow(hill.network, &self.vectors(), &mut self.following);
-        for (pull, load) in self.pulls.iter_mut().zip(&self.following) {
-            (0..3).for_each(|axis| pull[axis] += load[axis]);
-        }
-        hill.supports.keep_free(&mut self.pulls);
-        let largest = self.pulls.iter().map(|&pull| length(vector(pull))).fold(0.0, f64::max);
-        largest / state.mean_force.max(hill.least_force)
+        self.mean_force = total.iter().sum::<f64>() / self.count;
+    }
+
+    fn largest_unbalanced(&self) -> f64 {
+        let nodes = self.unbalanced.as_chunks::<3>().0.iter().zip(self.free.as_chunks::<3>().0);
+        let square = |(force, free): (&[f64; 3], &[bool; 3])| -> f64 {
+            (0..3).map(|axis| if free[axis] { force[axis] * force[axis] } else { 0.0 }).sum()
+        };
+        nodes.map(square).fold(0.0, f64::max).sqrt()
     }
 
     /// Makes one time step, or stops the net where its kinetic energy was largest.
-    fn advance(&mut self, hill: Hill<'_>) {
+    #[inline(always)]
+    fn advance(&mut self) {
         let share = if self.at_rest { 0.5 } else { 1.0 };
-        let mut kinetic = [0.0; 4];
-        let nodes = self.velocities.iter_mut().zip(&mut self.positions);
-        for ((velocity, position), (pull, mobility)) in nodes.zip(self.pulls.iter().zip(&self.mobility)) {
-            for lane in 0..4 {
-                velocity[lane] += share * pull[lane] * mobility;
+        let mut kinetic = [0.0; LANES];
+        let coordinates = self.velocity.chunks_mut(LANES).zip(self.position.chunks_mut(LANES));
+        let forces = self.unbalanced.chunks(LANES).zip(self.mobility.chunks(LANES));
+        for ((velocity, position), (force, mobility)) in coordinates.zip(forces) {
+            for lane in 0..velocity.len() {
+                let gained = force[lane] * mobility[lane];
+                velocity[lane] += share * gained;
                 position[lane] += velocity[lane];
                 // Twice the kinetic energy over a mass that is alike everywhere but near the border.
                 kinetic[lane] += velocity[lane] * velocity[lane];
@@ -134,18 +156,82 @@ impl Relaxation {
             return;
         }
         // The peak lay half a step before the middle of the last step (Barnes, eq. 9).
-        let nodes = self.velocities.iter_mut().zip(&mut self.positions);
-        for ((velocity, position), (pull, mobility)) in nodes.zip(self.pulls.iter().zip(&self.mobility)) {
-            for lane in 0..4 {
-                position[lane] -= 1.5 * velocity[lane] - 0.5 * pull[lane] * mobility;
-                velocity[lane] = 0.0;
-            }
+        for at in 0..self.position.len() {
+            self.position[at] -= 1.5 * self.velocity[at] - 0.5 * self.unbalanced[at] * self.mobility[at];
+            self.velocity[at] = 0.0;
         }
         (self.kinetic, self.at_rest) = (0.0, true);
-        self.weigh(hill);
     }
 
-    fn vectors(&self) -> Vec<Vector> {
-        self.positions.iter().map(|&position| vector(position)).collect()
+    fn vectors(&self) -> Vec<[f64; 3]> {
+        self.position.as_chunks().0.to_vec()
+    }
+}
+
+struct Pull<'a>(&'a mut Relaxation);
+
+impl NullaryFnOnce for Pull<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.pull();
+    }
+}
+
+struct Advance<'a>(&'a mut Relaxation);
+
+impl NullaryFnOnce for Advance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.advance();
+    }
+}
+
+impl Lanes {
+    fn new(network: &Network<'_>, springs: &[usize]) -> Self {
+        let value = |read: &dyn Fn(usize) -> f64| -> [f64; LANES] {
+            std::array::from_fn(|lane| springs.get(lane).map_or(0.0, |&spring| read(spring)))
+        };
+        Lanes {
+            ends: std::array::from_fn(|lane| springs.get(lane).map_or([0; 2], |&at| network.springs[at])),
+            stiffness: value(&|at| network.stiffness[at]),
+            offset: value(&|at| network.force[at] - network.stiffness[at] * network.rest_length[at]),
+            least: value(&|at| if network.sense[at] == Sense::Tension { 0.0 } else { f64::NEG_INFINITY }),
+            most: value(&|at| if network.sense[at] == Sense::Compression { 0.0 } else { f64::INFINITY }),
+        }
+    }
+
+    /// Adds the pull of these springs at their ends, and the size of their forces to `total`.
+    #[inline(always)]
+    fn pull(&self, position: &[f64], unbalanced: &mut [f64], total: &mut [f64; LANES]) {
+        let mut along = [[0.0; LANES]; 3];
+        for (lane, ends) in self.ends.iter().enumerate() {
+            let [a, b] = ends.map(|node| 3 * node as usize);
+            let (a, b) = (&position[a..a + 3], &position[b..b + 3]);
+            for axis in 0..3 {
+                along[axis][lane] = b[axis] - a[axis];
+            }
+        }
+        let [x, y, z] = &mut along;
+        for lane in 0..LANES {
+            let length = (x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane]).sqrt();
+            let elastic = self.offset[lane] + self.stiffness[lane] * length;
+            let force = elastic.max(self.least[lane]).min(self.most[lane]);
+            total[lane] += force.abs();
+            let density = if length > 0.0 { force / length } else { 0.0 };
+            x[lane] *= density;
+            y[lane] *= density;
+            z[lane] *= density;
+        }
+        for (lane, ends) in self.ends.iter().enumerate() {
+            let [a, b] = ends.map(|node| 3 * node as usize);
+            for (axis, pull) in along.iter().enumerate() {
+                unbalanced[a + axis] += pull[lane];
+                unbalanced[b + axis] -= pull[lane];
+            }
+        }
     }
 }

@@ -51,9 +51,9 @@ pub enum Method {
     Newton,
     /// Newton steps after an interior-point phase.
     Interior,
-    /// Implicit time steps.
+    /// Time steps, each one linear system.
     ImplicitEuler,
-    /// Explicit time steps.
+    /// Explicit time steps with kinetic damping.
     DynamicRelaxation,
 }
 
