@@ -2,16 +2,18 @@
 //!
 //! Barnes, "Form finding and analysis of tension structures by dynamic relaxation", International Journal of Space
 //! Structures 14(2), 1999. Nodes get fictitious masses, move freely under the forces out of balance, and stop
-//! dead whenever their kinetic energy has passed a peak. Springs are worked on several at a time, in lanes, by code that
-//! is compiled for the processor's vector units (crate `pulp`).
+//! dead whenever their kinetic energy has passed a peak. Springs are worked on several at a time, by code that is
+//! compiled for the processor's vector units (crate `pulp`).
 
 use super::state::{Equilibrium, Method, Settings, Status, unheld_node};
 use super::tangent::own_stiffness;
 use crate::network::{Network, Sense};
+use crate::sparse::Lanes;
+use crate::vector::Vector;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Springs worked on at a time.
-const LANES: usize = 8;
+const TOGETHER: usize = 8;
 
 /// Factor on the masses that stand on the bound of stability, for what changes between two peaks.
 const SAFETY: f64 = 1.05;
@@ -50,50 +52,51 @@ pub fn solve(network: &Network<'_>, settings: &Settings) -> Equilibrium {
     }
 }
 
-/// A net in motion. Coordinates stand in one row, x y z x y z …; time steps are of length one.
+/// A net in motion; time steps are of length one. What belongs to a node stands in four lanes, x y z and one of zeros.
 struct Relaxation {
-    springs: Vec<Lanes>,
+    springs: Vec<Springs>,
     /// Number of springs, at least 1.
     count: f64,
     /// Loads [N].
-    loads: Vec<f64>,
-    /// One over the mass of every coordinate [m/N]; zero where it is held.
-    mobility: Vec<f64>,
-    /// Which coordinates are free.
-    free: Vec<bool>,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-    unbalanced: Vec<f64>,
+    loads: Vec<Lanes>,
+    /// One over the mass of every node along each axis [m/N]; zero where it is held.
+    mobility: Vec<Lanes>,
+    position: Vec<Lanes>,
+    velocity: Vec<Lanes>,
+    unbalanced: Vec<Lanes>,
     mean_force: f64,
     kinetic: f64,
     /// The next step starts from rest.
     at_rest: bool,
 }
 
-/// The ends and laws of several springs; lanes left over hold springs of no stiffness.
-struct Lanes {
-    ends: [[u32; 2]; LANES],
-    stiffness: [f64; LANES],
+/// The ends and laws of several springs; places left over hold springs of no stiffness.
+struct Springs {
+    ends: [[u32; 2]; TOGETHER],
+    stiffness: [f64; TOGETHER],
     /// Force at length zero [N].
-    offset: [f64; LANES],
+    offset: [f64; TOGETHER],
     /// Bounds of the force by the spring's sense [N].
-    least: [f64; LANES],
-    most: [f64; LANES],
+    least: [f64; TOGETHER],
+    most: [f64; TOGETHER],
+}
+
+fn lanes(&[x, y, z]: &Vector) -> Lanes {
+    [x, y, z, 0.0]
 }
 
 impl Relaxation {
     fn new(network: &Network<'_>) -> Self {
         let springs: Vec<usize> = (0..network.springs.len()).collect();
-        let position: Vec<f64> = network.positions.iter().flatten().copied().collect();
+        let nodes = network.positions.len();
         let mut net = Relaxation {
             count: springs.len().max(1) as f64,
-            springs: springs.chunks(LANES).map(|some| Lanes::new(network, some)).collect(),
-            loads: network.loads.iter().flatten().copied().collect(),
-            mobility: Vec::new(),
-            free: network.fixed.iter().flatten().map(|&held| !held).collect(),
-            velocity: vec![0.0; position.len()],
-            unbalanced: vec![0.0; position.len()],
-            position,
+            springs: springs.chunks(TOGETHER).map(|some| Springs::new(network, some)).collect(),
+            loads: network.loads.iter().map(lanes).collect(),
+            mobility: vec![[0.0; 4]; nodes],
+            position: network.positions.iter().map(lanes).collect(),
+            velocity: vec![[0.0; 4]; nodes],
+            unbalanced: vec![[0.0; 4]; nodes],
             mean_force: 0.0,
             kinetic: 0.0,
             at_rest: true,
@@ -102,7 +105,7 @@ impl Relaxation {
         net
     }
 
-    /// Gives every coordinate the least mass at which steps of length one are stable: half the sum of its springs' stiffness.
+    /// Gives every node the least mass at which steps of length one are stable: half the sum of its springs' stiffness.
     fn weigh(&mut self, network: &Network<'_>) {
         let mut masses = vec![0.0; network.positions.len()];
         let lengths = network.lengths(&self.vectors());
@@ -110,26 +113,29 @@ impl Relaxation {
             let own = 0.5 * SAFETY * own_stiffness(network, spring, lengths[spring]);
             ends.iter().for_each(|&node| masses[node as usize] += own);
         }
-        let masses = masses.iter().flat_map(|&mass| [mass; 3]).zip(&self.free);
-        self.mobility =
-            masses.map(|(mass, &free)| if free && mass > 0.0 { 1.0 / mass } else { 0.0 }).collect();
+        for ((mobility, mass), held) in self.mobility.iter_mut().zip(masses).zip(network.fixed.iter()) {
+            let along = |axis: usize| if held[axis] || mass == 0.0 { 0.0 } else { 1.0 / mass };
+            *mobility = [along(0), along(1), along(2), 0.0];
+        }
     }
 
     /// Sums forces out of balance.
     #[inline(always)]
     fn pull(&mut self) {
         self.unbalanced.copy_from_slice(&self.loads);
-        let mut total = [0.0; LANES];
-        for lanes in &self.springs {
-            lanes.pull(&self.position, &mut self.unbalanced, &mut total);
+        let mut total = [0.0; TOGETHER];
+        for springs in &self.springs {
+            springs.pull(&self.position, &mut self.unbalanced, &mut total);
         }
         self.mean_force = total.iter().sum::<f64>() / self.count;
     }
 
+    /// Largest force out of balance at a node, along the axes on which it moves [N].
+    #[inline(always)]
     fn largest_unbalanced(&self) -> f64 {
-        let nodes = self.unbalanced.as_chunks::<3>().0.iter().zip(self.free.as_chunks::<3>().0);
-        let square = |(force, free): (&[f64; 3], &[bool; 3])| -> f64 {
-            (0..3).map(|axis| if free[axis] { force[axis] * force[axis] } else { 0.0 }).sum()
+        let nodes = self.unbalanced.iter().zip(&self.mobility);
+        let square = |(force, mobility): (&Lanes, &Lanes)| -> f64 {
+            (0..4).map(|lane| if mobility[lane] > 0.0 { force[lane] * force[lane] } else { 0.0 }).sum()
         };
         nodes.map(square).fold(0.0, f64::max).sqrt()
     }
@@ -138,13 +144,13 @@ impl Relaxation {
     #[inline(always)]
     fn advance(&mut self) {
         let share = if self.at_rest { 0.5 } else { 1.0 };
-        let mut kinetic = [0.0; LANES];
-        let coordinates = self.velocity.chunks_mut(LANES).zip(self.position.chunks_mut(LANES));
-        let forces = self.unbalanced.chunks(LANES).zip(self.mobility.chunks(LANES));
-        for ((velocity, position), (force, mobility)) in coordinates.zip(forces) {
-            for lane in 0..velocity.len() {
-                let gained = force[lane] * mobility[lane];
-                velocity[lane] += share * gained;
+        let mut kinetic = [0.0; 4];
+        let moving = self.velocity.iter_mut().zip(&mut self.position);
+        for ((velocity, position), (force, mobility)) in
+            moving.zip(self.unbalanced.iter().zip(&self.mobility))
+        {
+            for lane in 0..4 {
+                velocity[lane] += share * force[lane] * mobility[lane];
                 position[lane] += velocity[lane];
                 // Twice the kinetic energy over a mass that is alike everywhere but near the border.
                 kinetic[lane] += velocity[lane] * velocity[lane];
@@ -156,15 +162,18 @@ impl Relaxation {
             return;
         }
         // The peak lay half a step before the middle of the last step (Barnes, eq. 9).
-        for at in 0..self.position.len() {
-            self.position[at] -= 1.5 * self.velocity[at] - 0.5 * self.unbalanced[at] * self.mobility[at];
-            self.velocity[at] = 0.0;
+        for node in 0..self.position.len() {
+            for lane in 0..4 {
+                let gained = self.unbalanced[node][lane] * self.mobility[node][lane];
+                self.position[node][lane] -= 1.5 * self.velocity[node][lane] - 0.5 * gained;
+            }
+            self.velocity[node] = [0.0; 4];
         }
         (self.kinetic, self.at_rest) = (0.0, true);
     }
 
-    fn vectors(&self) -> Vec<[f64; 3]> {
-        self.position.as_chunks().0.to_vec()
+    fn vectors(&self) -> Vec<Vector> {
+        self.position.iter().map(|&[x, y, z, _]| [x, y, z]).collect()
     }
 }
 
@@ -190,13 +199,13 @@ impl NullaryFnOnce for Advance<'_> {
     }
 }
 
-impl Lanes {
+impl Springs {
     fn new(network: &Network<'_>, springs: &[usize]) -> Self {
-        let value = |read: &dyn Fn(usize) -> f64| -> [f64; LANES] {
-            std::array::from_fn(|lane| springs.get(lane).map_or(0.0, |&spring| read(spring)))
+        let value = |read: &dyn Fn(usize) -> f64| -> [f64; TOGETHER] {
+            std::array::from_fn(|place| springs.get(place).map_or(0.0, |&spring| read(spring)))
         };
-        Lanes {
-            ends: std::array::from_fn(|lane| springs.get(lane).map_or([0; 2], |&at| network.springs[at])),
+        Springs {
+            ends: std::array::from_fn(|place| springs.get(place).map_or([0; 2], |&at| network.springs[at])),
             stiffness: value(&|at| network.stiffness[at]),
             offset: value(&|at| network.force[at] - network.stiffness[at] * network.rest_length[at]),
             least: value(&|at| if network.sense[at] == Sense::Tension { 0.0 } else { f64::NEG_INFINITY }),
@@ -206,32 +215,28 @@ impl Lanes {
 
     /// Adds the pull of these springs at their ends, and the size of their forces to `total`.
     #[inline(always)]
-    fn pull(&self, position: &[f64], unbalanced: &mut [f64], total: &mut [f64; LANES]) {
-        let mut along = [[0.0; LANES]; 3];
-        for (lane, ends) in self.ends.iter().enumerate() {
-            let [a, b] = ends.map(|node| 3 * node as usize);
-            let (a, b) = (&position[a..a + 3], &position[b..b + 3]);
-            for axis in 0..3 {
-                along[axis][lane] = b[axis] - a[axis];
-            }
+    fn pull(&self, position: &[Lanes], unbalanced: &mut [Lanes], total: &mut [f64; TOGETHER]) {
+        let mut along = [[0.0; 4]; TOGETHER];
+        let mut density = [0.0; TOGETHER];
+        for (place, &[a, b]) in self.ends.iter().enumerate() {
+            let (a, b) = (position[a as usize], position[b as usize]);
+            let way: Lanes = std::array::from_fn(|lane| b[lane] - a[lane]);
+            density[place] = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+            along[place] = way;
         }
-        let [x, y, z] = &mut along;
-        for lane in 0..LANES {
-            let length = (x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane]).sqrt();
-            let elastic = self.offset[lane] + self.stiffness[lane] * length;
-            let force = elastic.max(self.least[lane]).min(self.most[lane]);
-            total[lane] += force.abs();
-            let density = if length > 0.0 { force / length } else { 0.0 };
-            x[lane] *= density;
-            y[lane] *= density;
-            z[lane] *= density;
+        for place in 0..TOGETHER {
+            let length = density[place].sqrt();
+            let elastic = self.offset[place] + self.stiffness[place] * length;
+            let force = elastic.max(self.least[place]).min(self.most[place]);
+            total[place] += force.abs();
+            density[place] = if length > 0.0 { force / length } else { 0.0 };
         }
-        for (lane, ends) in self.ends.iter().enumerate() {
-            let [a, b] = ends.map(|node| 3 * node as usize);
-            for (axis, pull) in along.iter().enumerate() {
-                unbalanced[a + axis] += pull[lane];
-                unbalanced[b + axis] -= pull[lane];
-            }
+        for (place, &[a, b]) in self.ends.iter().enumerate() {
+            let pull = along[place].map(|part| part * density[place]);
+            let end = &mut unbalanced[a as usize];
+            (0..4).for_each(|lane| end[lane] += pull[lane]);
+            let end = &mut unbalanced[b as usize];
+            (0..4).for_each(|lane| end[lane] -= pull[lane]);
         }
     }
 }
