@@ -115,9 +115,9 @@ class Network:
         `sense` is "tension", "both" or "compression".
 
         `loads` are dead, one vector a node [N]. `self_weight` [N/m] pulls along -z, half at each
-        end of a spring: by the unstressed length, or, where that is 0, by the length at
-        equilibrium. `pressure` [Pa] is square to cells wherever they move: (nodes around a cell,
-        pressure), positive along the normal of the right-hand rule.
+        end of a spring: by the unstressed length before `thermal_strain`, or, where that is 0, by
+        the length at equilibrium. `pressure` [Pa] is square to cells wherever they move: (nodes
+        around a cell, pressure), positive along the normal of the right-hand rule.
 
         `fixed` is one bool a node, or the numbers of the fixed nodes; `fixed_axes` holds further
         nodes along single axes: (node, "x"), …; `slides` lets nodes move on a line or in a plane
@@ -149,7 +149,10 @@ class Network:
         self.loads = numbers("loads", 0.0 if loads is None else loads, (nodes, 3))
         self.self_weight = read_only(np.zeros(0))
         if self_weight is not None:
-            self._weigh(numbers("self_weight", self_weight, (count,)))
+            warm = 0.0 if thermal_strain is None else np.asarray(thermal_strain)
+            self._weigh(
+                numbers("self_weight", self_weight, (count,)), self.rest_length / (1 + warm)
+            )
         self.pressure = [([int(node) for node in cell], float(value)) for cell, value in pressure]
         self.rods = [self._rod(number, rod) for number, rod in enumerate(rods)]
 
@@ -174,10 +177,10 @@ class Network:
         other.positions = read_only(self.positions + moved)
         return other
 
-    def _weigh(self, weight: Floats) -> None:
+    def _weigh(self, weight: Floats, unstressed: Floats) -> None:
         """Lump the weight of springs with an unstressed length; that of others follows them."""
         lumped = np.zeros(len(self.positions))
-        halves = np.repeat(0.5 * weight * self.rest_length, 2)
+        halves = np.repeat(0.5 * weight * unstressed, 2)
         np.add.at(lumped, self.springs.reshape(-1), halves)
         loads = self.loads.copy()
         loads[:, 2] -= lumped

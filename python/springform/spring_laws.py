@@ -148,8 +148,8 @@ class _Resolver:
         strain = self._values("thermal_strain", 0.0 if thermal_strain is None else thermal_strain)
         if (bad := np.flatnonzero(~(strain > -1))).size:
             raise InputError(f"must be above -1, not {strain[bad[0]]:g}", key="thermal_strain")
-        # A measured curve keeps its axial stiffness; k r is that.
-        rate = np.where(curved, rate / (1 + strain), rate)
+        # Whatever its unstressed length, a cord keeps its axial stiffness: k r.
+        rate = np.where(np.isnan(axial), rate, rate / (1 + strain))
         return SpringLaws(
             read_only(np.where(elastic, rate, 0.0)),
             read_only(np.where(elastic, rest * (1 + strain), 0.0)),

@@ -99,8 +99,10 @@ impl Bend {
             [0, 1].map(|at| if sizes[at] > 0.0 { scale(links[at], 1.0 / sizes[at]) } else { [0.0; 3] });
         let cosine = dot(first, second);
         let chord = self.chord(cosine).max(1e-9 * (a + b));
-        // E as a function of the cosine: its value, its first and its second change.
-        let energy = 2.0 * self.stiffness * (a + b - chord) / (a * b);
+        // E as a function of the cosine: its value, its first and its second change. For the value a + b − l is written as
+        // 2 a b (1 − cos α) / (a + b + l), and 1 − cos α as |e₁ − e₂|² / 2: small angles would lose all digits.
+        let apart = subtract(first, second);
+        let energy = 2.0 * self.stiffness * dot(apart, apart) / (a + b + chord);
         let rate = -2.0 * self.stiffness / chord;
         let curvature = 2.0 * self.stiffness * a * b / chord.powi(3);
         // Changes of the cosine with both links.

@@ -18,6 +18,7 @@ mod followers;
 pub mod implicit_euler;
 mod interior;
 mod linear;
+mod mixed;
 mod newton;
 mod solver;
 mod state;

@@ -99,7 +99,7 @@ impl Newton {
                     .extend(positions.iter().zip(&self.step).map(|(position, step)| sum(position, step)));
                 let (_, next_residual) = hill.look(&self.next, &mut self.next_pulls);
                 let change = Change::new(hill, positions, &self.next);
-                let falls = change.energy <= -1e-4 * fall;
+                let falls = change.energy <= -1e-4 * fall && next_residual.is_finite();
                 // Near equilibrium rounding hides the fall of energy, not that of the residual.
                 let level = change.energy <= change.noise && next_residual < residual;
                 if falls || level {

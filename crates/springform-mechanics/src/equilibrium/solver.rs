@@ -5,6 +5,7 @@ use super::elements::Elements;
 use super::followers::{Accelerated, follow};
 use super::interior::{MOST_INTERIOR, interior};
 use super::linear::Linear;
+use super::mixed::{MOST_MIXED, mixed};
 use super::newton::{Change, Ended, Newton};
 use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
 use super::supports::Supports;
@@ -103,6 +104,10 @@ impl Solver {
 
     /// Solves under loads that follow the shape: again and again under the loads that the last shape gives.
     fn follow(&mut self, network: &Network<'_>, settings: &Settings) -> Equilibrium {
+        let rest = Equilibrium::at(network, network.positions.to_vec(), Status::Converged, 0);
+        if rest.residual <= settings.tolerance {
+            return Equilibrium { method: Method::Newton, ..rest };
+        }
         let inner = Settings { tolerance: 0.1 * settings.tolerance, ..*settings };
         let mut accelerated = Accelerated::default();
         let mut start = network.positions.to_vec();
@@ -119,8 +124,9 @@ impl Solver {
             if state.residual <= settings.tolerance {
                 return state;
             }
-            if !state.residual.is_finite() {
-                return Equilibrium { status: Status::Unstable, ..state };
+            if state.status == Status::Singular {
+                // Numbers overflowed: the last shape that has them all tells more.
+                break;
             }
             let moved = state.positions.clone();
             if best.as_ref().is_none_or(|best| state.residual < best.residual) {
@@ -172,6 +178,14 @@ impl Solver {
             iterations = descended.iterations;
             if descended.converged {
                 return (Status::Converged, iterations, Method::Preconditioned);
+            }
+        }
+        if !elements.bends.is_empty() {
+            let patience = MOST_MIXED.min(limit - iterations);
+            let (moved, steps) = mixed(hill, &mut newton.tangent, positions, settings.tolerance, patience);
+            iterations += steps;
+            if Change::new(hill, positions, &moved).energy < 0.0 {
+                *positions = moved;
             }
         }
         let patience = PATIENCE.min(limit - iterations);

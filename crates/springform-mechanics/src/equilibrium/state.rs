@@ -219,7 +219,9 @@ pub(super) fn least_force_scale(network: &Network<'_>) -> f64 {
     let stiffness = network.stiffness.iter().zip(network.rest_length.iter());
     let springs = stiffness.filter(|&(_, &rest)| rest > 0.0);
     let stretched = |span: f64| springs.map(|(k, rest)| k * rest.max(span)).fold(0.0, f64::max);
-    1e-6 * loads.max(stretched(span(network)))
+    // A rod reaches as far as it is long, however few of its nodes are held.
+    let rod = network.rods.iter().map(|rod| rod.lengths.iter().sum()).fold(0.0, f64::max);
+    1e-6 * loads.max(stretched(span(network).max(rod)))
 }
 
 /// Largest extent of the held nodes along an axis [m].

@@ -1,7 +1,8 @@
 //! Factors with three by three numbers an entry: one block a pair of nodes.
 //!
-//! Left-looking L D Lᵀ (George & Liu, "Computer solution of large sparse positive definite systems", 1981), column by
-//! column.
+//! Left-looking L Lᵀ (George & Liu, "Computer solution of large sparse positive definite systems", 1981), column by
+//! column. Pivots are factored and never inverted: those of a stiff rod are ill-conditioned, and products with their
+//! inverses would lose its bending stiffness.
 
 use super::columns::Columns as Layout;
 use super::graph::Graph;
@@ -18,14 +19,14 @@ type Columns = [Lanes; 3];
 
 const ZERO: Columns = [[0.0; 4]; 3];
 
-/// A factor L D Lᵀ of blocks and its workspace.
+/// A factor L Lᵀ of blocks and its workspace.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct BlockFactor {
     layout: Layout,
     order: Vec<u32>,
     values: Vec<Columns>,
-    pivots: Vec<Columns>,
-    inverses: Vec<Columns>,
+    /// Factors of the pivots, see [`Root`].
+    roots: Vec<Root>,
     dense: Vec<Columns>,
     sides: Vec<Lanes>,
 }
@@ -52,9 +53,7 @@ impl BlockFactor {
     ) -> Result<(), NotPositiveDefinite> {
         let size = graph.rows();
         self.values.resize(self.layout.rows.len(), ZERO);
-        for list in [&mut self.pivots, &mut self.inverses] {
-            list.resize(size, ZERO);
-        }
+        self.roots.resize(size, Root::default());
         // A factorisation that was refused left numbers behind.
         self.dense.clear();
         self.dense.resize(size, ZERO);
@@ -86,7 +85,7 @@ impl NullaryFnOnce for Factorise<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let BlockFactor { layout, values, pivots, inverses, dense, .. } = self.factor;
+        let BlockFactor { layout, values, roots, dense, .. } = self.factor;
         let Layout { starts, rows, row_starts, entries, .. } = layout;
         let (order, place) = (&self.symbolic.order, &self.symbolic.place);
         let (values, dense) = (values.as_mut_slice(), dense.as_mut_slice());
@@ -110,21 +109,20 @@ impl NullaryFnOnce for Factorise<'_> {
             for &(column, entry) in &entries[row_starts[at] as usize..row_starts[at + 1] as usize] {
                 let end = starts[column as usize + 1] as usize;
                 let first = values[entry as usize];
-                // −D Lᵀ, by which entries of the column are multiplied.
-                let factor = negative_transposed(&pivots[column as usize], &first);
+                // −Lᵀ, by which entries of the column are multiplied.
+                let factor = negative_transposed(&first);
                 add_product(&mut pivot, &first, &factor);
                 let tail = entry as usize + 1..end;
                 for (&below, value) in rows[tail.clone()].iter().zip(&values[tail]) {
                     add_product(&mut dense[below as usize], value, &factor);
                 }
             }
-            let Some(inverse) = inverse(&pivot) else { return Err(NotPositiveDefinite { row }) };
-            (pivots[at], inverses[at]) = (pivot, inverse);
+            let Some(root) = Root::new(&pivot) else { return Err(NotPositiveDefinite { row }) };
+            roots[at] = root;
             let column = starts[at] as usize..starts[at + 1] as usize;
             for (&below, value) in rows[column.clone()].iter().zip(&mut values[column]) {
                 let sum = &mut dense[below as usize];
-                *value = ZERO;
-                add_product(value, sum, &inverse);
+                *value = root.divide(sum);
                 *sum = ZERO;
             }
         }
@@ -141,19 +139,19 @@ impl NullaryFnOnce for Substitute<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let BlockFactor { layout, values, inverses, sides, .. } = self.factor;
+        let BlockFactor { layout, values, roots, sides, .. } = self.factor;
         let Layout { starts, rows, .. } = layout;
         let (values, sides) = (values.as_slice(), sides.as_mut_slice());
         let column = |at: usize| starts[at] as usize..starts[at + 1] as usize;
         for at in 0..sides.len() {
+            sides[at] = roots[at].forwards(&sides[at]);
             let side = sides[at].map(|value| -value);
             for (&row, value) in rows[column(at)].iter().zip(&values[column(at)]) {
                 add_times(&mut sides[row as usize], value, &side);
             }
         }
         for at in (0..sides.len()).rev() {
-            let mut side = [0.0; 4];
-            add_times(&mut side, &inverses[at], &sides[at]);
+            let mut side = sides[at];
             for (&row, value) in rows[column(at)].iter().zip(&values[column(at)]) {
                 let below = sides[row as usize];
                 for lane in 0..3 {
@@ -162,8 +160,64 @@ impl NullaryFnOnce for Substitute<'_> {
                         (-x).mul_add(below[0], (-y).mul_add(below[1], (-z).mul_add(below[2], side[lane])));
                 }
             }
-            sides[at] = side;
+            sides[at] = roots[at].backwards(&side);
         }
+    }
+}
+
+/// The factor C Cᵀ of a pivot: what stands below its diagonal, and the diagonal inverted.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+struct Root {
+    yx: f64,
+    zx: f64,
+    zy: f64,
+    inverse: Vector,
+}
+
+impl Root {
+    /// The factor of a positive definite block; `None` of any other.
+    #[inline(always)]
+    fn new(a: &Columns) -> Option<Root> {
+        let [[xx, xy, xz, _], [_, yy, yz, _], [_, _, zz, _]] = *a;
+        let x = 1.0 / xx.sqrt();
+        let (yx, zx) = (xy * x, xz * x);
+        let middle = yy - yx * yx;
+        let y = 1.0 / middle.sqrt();
+        let zy = (yz - zx * yx) * y;
+        let last = zz - zx * zx - zy * zy;
+        let z = 1.0 / last.sqrt();
+        // What is not a number passes no comparison.
+        let definite = xx > 0.0 && middle > 0.0 && last > 0.0;
+        let finite = xx.is_finite() && middle.is_finite() && last.is_finite();
+        (definite && finite).then_some(Root { yx, zx, zy, inverse: [x, y, z] })
+    }
+
+    /// S C⁻ᵀ.
+    #[inline(always)]
+    fn divide(&self, s: &Columns) -> Columns {
+        let [x, y, z] = self.inverse;
+        let first = s[0].map(|value| value * x);
+        let second: Lanes = std::array::from_fn(|lane| (-self.yx).mul_add(first[lane], s[1][lane]) * y);
+        let third = std::array::from_fn(|lane| {
+            (-self.zy).mul_add(second[lane], (-self.zx).mul_add(first[lane], s[2][lane])) * z
+        });
+        [first, second, third]
+    }
+
+    /// C⁻¹ v.
+    #[inline(always)]
+    fn forwards(&self, v: &Lanes) -> Lanes {
+        let x = v[0] * self.inverse[0];
+        let y = (-self.yx).mul_add(x, v[1]) * self.inverse[1];
+        [x, y, (-self.zy).mul_add(y, (-self.zx).mul_add(x, v[2])) * self.inverse[2], 0.0]
+    }
+
+    /// C⁻ᵀ v.
+    #[inline(always)]
+    fn backwards(&self, v: &Lanes) -> Lanes {
+        let z = v[2] * self.inverse[2];
+        let y = (-self.zy).mul_add(z, v[1]) * self.inverse[1];
+        [(-self.yx).mul_add(y, (-self.zx).mul_add(z, v[0])) * self.inverse[0], y, z, 0.0]
     }
 }
 
@@ -188,37 +242,8 @@ fn add_times(a: &mut Lanes, b: &Columns, v: &Lanes) {
     }
 }
 
-/// −a bᵀ of a symmetric a.
+/// −aᵀ.
 #[inline(always)]
-fn negative_transposed(a: &Columns, b: &Columns) -> Columns {
-    let mut product = ZERO;
-    for (column, lanes) in product.iter_mut().enumerate() {
-        add_times(lanes, a, &[-b[0][column], -b[1][column], -b[2][column], 0.0]);
-    }
-    product
-}
-
-/// The inverse of a positive definite block; `None` of any other.
-#[inline(always)]
-fn inverse(a: &Columns) -> Option<Columns> {
-    let [[xx, xy, xz, _], [_, yy, yz, _], [_, _, zz, _]] = *a;
-    // Pivots of elimination: rounding refuses what a determinant would let through.
-    let (first, second) = (xy / xx, xz / xx);
-    let (middle, side) = (yy - first * xy, yz - first * xz);
-    let third = side / middle;
-    let last = zz - second * xz - third * side;
-    if !(xx > 0.0 && middle > 0.0 && last > 0.0 && xx.is_finite() && middle.is_finite() && last.is_finite()) {
-        return None;
-    }
-    let lower = first * third - second;
-    let (x, y, z) = (1.0 / xx, 1.0 / middle, 1.0 / last);
-    let inverse_yy = y + third * third * z;
-    let inverse_xy = -first * y - third * lower * z;
-    let inverse_xx = x + first * first * y + lower * lower * z;
-    let (inverse_xz, inverse_yz) = (lower * z, -third * z);
-    Some([
-        [inverse_xx, inverse_xy, inverse_xz, 0.0],
-        [inverse_xy, inverse_yy, inverse_yz, 0.0],
-        [inverse_xz, inverse_yz, z, 0.0],
-    ])
+fn negative_transposed(a: &Columns) -> Columns {
+    std::array::from_fn(|column| [-a[0][column], -a[1][column], -a[2][column], 0.0])
 }

@@ -1,40 +1,14 @@
-"""Bare nets against closed forms: cables, minimal trees, surfaces, strings, bars and chains.
-
-A minimal catenoid is not among them: a net of constant forces is geodesic, not minimal.
-"""
+"""Cables, strings, bars and chains against closed forms."""
 
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from nets import UP, assert_order, chain, solved
 from scipy.optimize import brentq
 
 import springform as sf
-
-UP = np.array([0.0, 0.0, 1.0])
-
-
-def solved(network: sf.Network, **arguments: Any) -> sf.Equilibrium:
-    """The equilibrium, whose reactions balance the loads as forces and as moments."""
-    result = sf.solve(network, **arguments)
-    assert result.converged, result.reason
-    outer = network.loads + result.reactions
-    scale = max(np.abs(result.forces).max(), np.abs(network.loads).max())
-    assert np.abs(outer.sum(axis=0)).max() <= 1e-9 * scale * len(outer)
-    reach = np.abs(result.positions).max()
-    moment = np.cross(result.positions, outer).sum(axis=0)
-    assert np.abs(moment).max() <= 1e-9 * scale * reach * len(outer)
-    return result
-
-
-def chain(
-    start: np.ndarray, end: np.ndarray, count: int, *, sag: float = 0.0, **arguments: Any
-) -> sf.Network:
-    """Springs one after the other between two fixed points, drawn as a line or a parabola."""
-    share = np.linspace(0, 1, count + 1)[:, None]
-    positions = start + share * (end - start) - 4 * sag * share * (1 - share) * UP
-    return sf.Network(positions, list(pairwise(range(count + 1))), [0, count], **arguments)
 
 
 class Catenary:
@@ -91,11 +65,7 @@ def test_a_heavy_cable_converges_to_the_catenary(
         errors.append(np.abs(result.positions - exact.positions(count)).max())
         pulls.append(abs(np.abs(result.reactions[0, 0]) - exact.pull))
     for name, values in (("position", errors), ("pull", pulls)):
-        orders = np.log2(np.divide(values[:-1], values[1:]))
-        record_property(f"{name} errors", str(values))
-        record_property(f"{name} order", str(orders))
-        print(f"{name}: errors {np.array(values)}, observed orders {orders}")
-        assert np.all((orders[1:] > 1.9) & (orders[1:] < 2.1)), orders
+        assert_order(values, record_property, name)
 
 
 def test_a_stiff_cable_is_the_inextensible_catenary() -> None:
@@ -108,82 +78,6 @@ def test_a_stiff_cable_is_the_inextensible_catenary() -> None:
     sag = span / (2 * u) * (np.cosh(u) - 1)
     assert -result.positions[:, 2].min() == pytest.approx(sag, rel=3e-4)
     assert result.reactions[0, 2] == pytest.approx(length / 2, rel=1e-9)
-
-
-def acute_triangle(rng: np.random.Generator) -> np.ndarray:
-    """Corners in a random plane in space, all angles below 85°."""
-    while True:
-        corners = rng.uniform(-1, 1, (3, 3))
-        sides = np.roll(corners, -1, axis=0) - corners
-        cosines = [-(sides[i] @ sides[i - 1]) for i in range(3)]
-        sizes = np.linalg.norm(sides, axis=1)
-        cosines = [cosines[i] / (sizes[i] * sizes[i - 1]) for i in range(3)]
-        if min(cosines) > np.cos(np.radians(85)) and sizes.min() > 0.2:
-            return corners
-
-
-def meeting(corners: np.ndarray, weights: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """Where three constant forces balance, by the mechanics."""
-    network = sf.Network(
-        [*corners, start], [[0, 3], [1, 3], [2, 3]], [0, 1, 2], force=weights, sense="tension"
-    )
-    return np.asarray(solved(network, tolerance=1e-11).positions[3])
-
-
-def between(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.degrees(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b))))
-
-
-@pytest.mark.parametrize("seed", range(50))
-def test_equal_pulls_meet_at_the_fermat_point(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    corners = acute_triangle(rng)
-    found = meeting(corners, np.full(3, 2.0), corners.T @ rng.dirichlet([1, 1, 1]))
-    rays = corners - found
-    np.testing.assert_allclose([between(rays[i], rays[i - 1]) for i in range(3)], 120, atol=1e-5)
-    # Trilinears csc(A + 60°) : csc(B + 60°) : csc(C + 60°).
-    sides = np.linalg.norm(np.roll(corners, -1, axis=0) - np.roll(corners, 1, axis=0), axis=1)
-    angles = [between(corners[i - 2] - corners[i], corners[i - 1] - corners[i]) for i in range(3)]
-    shares = sides / np.sin(np.radians(np.array(angles) + 60))
-    np.testing.assert_allclose(found, shares @ corners / shares.sum(), atol=1e-7)
-
-
-@pytest.mark.parametrize("seed", range(50))
-def test_unequal_pulls_meet_by_the_law_of_sines(seed: int) -> None:
-    rng = np.random.default_rng([seed, 1])
-    # The point and its rays come first: forces follow from the angles (Lami).
-    turns = np.radians(rng.dirichlet([8, 8, 8]) * 360)
-    if turns.max() > np.radians(170):
-        turns = np.radians([100.0, 120.0, 140.0])
-    ways = np.cumsum(turns)
-    rays = np.column_stack([np.cos(ways), np.sin(ways), np.zeros(3)])
-    point = rng.uniform(-1, 1, 3)
-    corners = point + rays * rng.uniform(0.5, 2, (3, 1))
-    # Opposite ray i lies the angle between the other two, turns[i - 1] beyond the next.
-    weights = np.sin([turns[2], turns[0], turns[1]])
-    found = meeting(corners, weights, corners.mean(axis=0))
-    np.testing.assert_allclose(found, point, atol=1e-7)
-
-
-@pytest.mark.parametrize("count", [1, 2, 5, 10, 40])
-def test_equal_force_densities_between_straight_edges_are_a_hypar(count: int) -> None:
-    size = count + 1
-    u, v = np.meshgrid(np.linspace(0, 1, size), np.linspace(0, 1, size), indexing="ij")
-    corners = np.array([[0, 0, 0], [0, 7, 3], [8, 0, 4], [9, 8, -1]], dtype=float)
-    weights = np.stack([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v], axis=-1)
-    exact = (weights @ corners).reshape(-1, 3)
-    number = np.arange(size * size).reshape(size, size)
-    springs = np.vstack(
-        [
-            np.column_stack([number[:-1].ravel(), number[1:].ravel()]),
-            np.column_stack([number[:, :-1].ravel(), number[:, 1:].ravel()]),
-        ]
-    )
-    edge = np.zeros((size, size), dtype=bool)
-    edge[[0, -1]] = edge[:, [0, -1]] = True
-    start = np.where(edge.ravel()[:, None], exact, 5.0)
-    result = solved(sf.Network(start, springs, edge.ravel(), stiffness=3.0))
-    np.testing.assert_allclose(result.positions, exact, atol=1e-12 * 10 * size)
 
 
 @pytest.mark.parametrize("prestress", [0.0, 1.0, 50.0])
