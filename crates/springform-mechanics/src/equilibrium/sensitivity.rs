@@ -244,12 +244,12 @@ impl Sensitivity {
         self.supports.keep_free(&mut lanes);
         if self.scalar {
             let mut side: Vec<Lanes> = self.supports.nodes.iter().map(|&node| lanes[node as usize]).collect();
-            self.factor.solve(&self.layout.symbolic, &mut side);
+            self.factor.solve(&mut side);
             for (&node, value) in self.supports.nodes.iter().zip(side) {
                 lanes[node as usize] = value;
             }
         } else {
-            self.tangent.solve(&self.layout, &self.supports, &mut lanes);
+            self.tangent.solve(&self.supports, &mut lanes);
         }
         lanes.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()
     }
