@@ -92,6 +92,8 @@ pub struct Sensitivity {
     scalar: bool,
     tangent: Tangent,
     factor: ScalarFactor,
+    /// Pattern that the scalar factor is laid out for.
+    pattern: u64,
 }
 
 impl Sensitivity {
@@ -191,6 +193,10 @@ impl Sensitivity {
             }
         }
         let weights: Vec<f64> = self.parts.iter().map(|part| -part.moduli[0]).collect();
+        if self.pattern != self.layout.pattern {
+            self.factor.lay_out(&self.layout.graph, &self.layout.symbolic);
+            self.pattern = self.layout.pattern;
+        }
         let factored = self.factor.factor(&self.layout.graph, &self.layout.symbolic, &diagonal, &weights);
         factored.map_err(|refused| self.singular(refused.row))
     }
