@@ -5,11 +5,11 @@
 //! (Haftka & Gürdal, "Elements of structural optimization", 1992, chapter 7): with K λ = dJ/dx, dJ/dp = λ ∂R/∂p + ∂J/∂p.
 //! For a net of force densities K is the scalar factor of the linear solver.
 
-use super::elements::Elements;
 use super::state::unheld_node;
 use super::supports::Supports;
 use super::tangent::{Layout, Tangent, block, moduli, own_bend_stiffness};
 use crate::network::Network;
+use crate::rod::Bend;
 use crate::sparse::{Block, Graph, Lanes, ScalarFactor};
 use crate::vector::{Vector, add, dot, length, scale, subtract};
 use thiserror::Error;
@@ -84,11 +84,11 @@ struct Part {
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Sensitivity {
     supports: Supports,
-    elements: Elements,
     layout: Layout,
     parts: Vec<Part>,
-    /// Nodes of every bend, and its stiffness over its two links.
-    bends: Vec<([u32; 3], [Block; 3])>,
+    bends: Vec<Bend>,
+    /// Stiffness of every bend over its two links.
+    bending: Vec<[Block; 3]>,
     scalar: bool,
     tangent: Tangent,
     factor: ScalarFactor,
@@ -109,15 +109,14 @@ impl Sensitivity {
             return Err(SensitivityError::Unheld { node });
         }
         self.supports.build(network);
-        self.elements.bends.clear();
-        self.elements.bends.extend(network.rods.iter().flat_map(|rod| rod.bends()));
-        self.layout.build(network, &self.elements, &self.supports);
+        self.bends.clear();
+        self.bends.extend(network.rods.iter().flat_map(|rod| rod.bends()));
+        self.layout.build(network, &self.bends, &self.supports, None);
         self.parts.clear();
         self.parts.extend((0..network.springs.len()).map(|spring| part(network, spring, positions)));
-        let bends = self.elements.bends.iter();
-        let stiffness = bends.map(|bend| (bend.nodes, bend.bending(bend.links(positions), false).stiffness));
-        self.bends.clear();
-        self.bends.extend(stiffness);
+        let bending = self.bends.iter().map(|bend| bend.bending(bend.links(positions), false).stiffness);
+        self.bending.clear();
+        self.bending.extend(bending);
         self.scalar = network.is_linear();
         if self.scalar { self.factor_scalar() } else { self.factor_blocks() }
     }
@@ -203,7 +202,7 @@ impl Sensitivity {
 
     fn factor_blocks(&mut self) -> Result<(), SensitivityError> {
         let springs = self.parts.iter().map(|part| (part.tangent(), 0.0));
-        let bends = self.bends.iter().map(|(_, stiffness)| (*stiffness, 0.0));
+        let bends = self.bending.iter().map(|stiffness| (*stiffness, 0.0));
         let factored = self.tangent.factor(&self.layout, &self.supports, springs, bends);
         factored.map_err(|refused| self.singular(refused.row))?;
         self.check_condition()
@@ -216,7 +215,7 @@ impl Sensitivity {
             let own = part.moduli[0].abs().max(part.moduli[1].abs());
             part.ends.iter().for_each(|&node| stiffness[node as usize] += own);
         }
-        for bend in &self.elements.bends {
+        for bend in &self.bends {
             bend.nodes.iter().for_each(|&node| stiffness[node as usize] += own_bend_stiffness(bend));
         }
         let stiffest = stiffness.into_iter().fold(0.0, f64::max);
@@ -267,13 +266,14 @@ impl Sensitivity {
             let resisted = times(&part.tangent(), part.difference(moves));
             spread(&mut forces, part.ends, resisted, -1.0);
         }
-        for ([a, b, c], [first, mixed, second]) in &self.bends {
-            let [here, middle, there] = [a, b, c].map(|&node| moves[node as usize]);
+        for (bend, [first, mixed, second]) in self.bends.iter().zip(&self.bending) {
+            let [a, b, c] = bend.nodes;
+            let [here, middle, there] = [a, b, c].map(|node| moves[node as usize]);
             let (u, v) = (subtract(middle, here), subtract(there, middle));
             let by_first = add(times(first, u), times(mixed, v));
             let by_second = add(turned_times(mixed, u), times(second, v));
-            spread(&mut forces, [*a, *b], by_first, -1.0);
-            spread(&mut forces, [*b, *c], by_second, -1.0);
+            spread(&mut forces, [a, b], by_first, -1.0);
+            spread(&mut forces, [b, c], by_second, -1.0);
         }
         forces
     }
