@@ -53,11 +53,11 @@ fn settled(net: &nets::Net, draw: &Draw) -> Option<(Network<'static>, Equilibriu
     let curve = Curve::new(&POINTS).expect("it ascends");
     network.curves = vec![curve].into();
     network.curve = vec![NO_CURVE; count].into();
-    for spring in 0..count {
+    for (spring, &length) in lengths.iter().enumerate() {
         let share = draw.shares[spring % draw.shares.len()];
-        let rest = share * lengths[spring];
+        let rest = share * length;
         // Strong constant forces pull nodes onto each other, where springs have no direction.
-        let weak = 0.1 * network.stiffness[spring] * lengths[spring].max(0.1) * share;
+        let weak = 0.1 * network.stiffness[spring] * length.max(0.1) * share;
         match draw.laws[spring % draw.laws.len()] {
             0 => {}
             1 => network.rest_length.to_mut()[spring] = rest,
