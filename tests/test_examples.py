@@ -15,6 +15,7 @@ LAST_LINES = {
     "03_stress_seeking.py": "type 6, dynamic: ",
     "04_evolve.py": "rebuilt: ",
     "05_animate.py": "converged: True",
+    "08_even_forces.py": "of 1, 2 or 4 strands: 5.38, then ",
     "06_real_cords.py": "held: 500.0 N of 500.0 N",
 }
 

@@ -9,7 +9,9 @@ sf.save(run.best, "evolved.toml")
 """
 
 from ._core import __version__
+from .derivatives import Gradient, Response, Sensitivity, sensitivity
 from .design import Aperture, Cells, Design, Measures, load, save
+from .equalisation import Equalised, EqualiseStep, equalise
 from .errors import DesignError, InputError, RunError, SpringformError
 from .evolution import Progress, SeekStep, evolve, resume, seek
 from .files import WriteError
@@ -25,20 +27,26 @@ __all__ = [
     "Curve",
     "Design",
     "DesignError",
+    "EqualiseStep",
+    "Equalised",
     "Equilibrium",
+    "Gradient",
     "InputError",
     "Measures",
     "Network",
     "Parameters",
     "Progress",
+    "Response",
     "Rod",
     "Run",
     "RunError",
     "SeekStep",
+    "Sensitivity",
     "SpringformError",
     "WriteError",
     "__version__",
     "animate",
+    "equalise",
     "evolve",
     "load",
     "open_run",
@@ -47,5 +55,6 @@ __all__ = [
     "save",
     "scene_names",
     "seek",
+    "sensitivity",
     "solve",
 ]

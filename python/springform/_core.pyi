@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 __all__ = [
     "BaseMesh",
     "CoreError",
+    "Equalisation",
     "Evolution",
     "ForceStrainCurve",
     "Forest",
     "ImplicitEuler",
     "Net",
+    "Sensitivity",
     "Setting",
     "StressSeeking",
     "__version__",
@@ -348,6 +350,69 @@ class ImplicitEuler:
     ) -> ImplicitEuler: ...
     def advance(self, tolerance: float) -> SolveResult:
         """Make one time step and return the state after it."""
+
+class _Gradient(TypedDict):
+    stiffness: _Floats
+    rest_length: _Floats
+    force: _Floats
+    loads: _Floats
+    supports: _Floats
+
+class _Response(TypedDict):
+    positions: _Floats
+    forces: _Floats
+
+@final
+class Sensitivity:
+    """The factored tangent stiffness of a bare network at its equilibrium."""
+
+    def __new__(cls, network: _NetworkArrays, positions: _Floats) -> Sensitivity:
+        """Take equilibrium positions, (n, 3) [m]."""
+
+    def gradient(self, by_positions: _Floats, by_forces: _Floats) -> _Gradient:
+        """Return the gradient of a scalar of positions, (n, 3), and spring forces, (m,)."""
+
+    def response(
+        self,
+        stiffness: _Floats,
+        rest_length: _Floats,
+        force: _Floats,
+        loads: _Floats,
+        supports: _Floats,
+    ) -> _Response:
+        """Return the change of the equilibrium with changes of all parameters."""
+
+@final
+class Equalisation:
+    """Stiffness factors of a bare network on their way to even forces."""
+
+    def __new__(
+        cls, network: _NetworkArrays, bounds: list[float], values: list[float], tolerance: float
+    ) -> Equalisation:
+        """Take two bounds on the factors, or, where there are any, the only values allowed."""
+
+    def advance(self) -> bool:
+        """Make one step; return False once there is none left to make."""
+
+    @property
+    def factors(self) -> _Floats:
+        """Best factors so far, (m,)."""
+
+    @property
+    def before(self) -> float:
+        """Force differential with factors of 1."""
+
+    @property
+    def differential(self) -> float:
+        """Force differential with the best factors."""
+
+    @property
+    def differential_now(self) -> float:
+        """Force differential where the steps are now."""
+
+    @property
+    def iterations(self) -> int:
+        """Steps made."""
 
 def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> SolveResult:
     """Solve a bare network by "direct", "implicit-euler" or "dynamic-relaxation"."""

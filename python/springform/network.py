@@ -177,6 +177,18 @@ class Network:
         other.positions = read_only(self.positions + moved)
         return other
 
+    def stiffened(self, factors: ArrayLike) -> Network:
+        """Return the same network with a factor on the stiffness k of every spring, or of each.
+
+        Springs of constant force have none. Raises `InputError`: another shape, or not above 0.
+        """
+        values = numbers("factors", factors, (len(self.springs),))
+        if not (values > 0).all():
+            raise InputError("must be above 0", key="factors")
+        other = copy.copy(self)
+        other.stiffness = read_only(self.stiffness * values)
+        return other
+
     def _weigh(self, weight: Floats, unstressed: Floats) -> None:
         """Lump the weight of springs with an unstressed length; that of others follows them."""
         lumped = np.zeros(len(self.positions))

@@ -13,6 +13,7 @@ from typing import Any
 
 from .design import Design, Measures
 from .design_file import dump
+from .equalisation import Equalised
 from .exchange.obj import line_obj
 from .files import WriteError, explain, write_atomically
 from .network import Equilibrium
@@ -63,6 +64,25 @@ def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: 
     for name, text in contents.items():
         write_atomically(folder / name, text.encode())
     return [folder / name for name in contents]
+
+
+def write_factors(design: Design, tuned: Equalised, path: Path) -> None:
+    """Write a table of springs by their node keys: factor, stiffness [N/m], length [m], force [N].
+
+    Raises `WriteError`: the file can't be written.
+    """
+    keys = design.nodes
+    springs = zip(
+        ((keys[a], keys[b]) for a, b in tuned.network.springs.tolist()),
+        tuned.factors.tolist(),
+        tuned.network.stiffness.tolist(),
+        tuned.equilibrium.lengths.tolist(),
+        tuned.equilibrium.forces.tolist(),
+        strict=True,
+    )
+    header = ["spring", "node_a", "node_b", "factor", "stiffness", "length", "force"]
+    rows = ((number, *ends, *values) for number, (ends, *values) in enumerate(springs))
+    write_atomically(path, _csv(header, rows).encode())
 
 
 def finite(value: Any) -> Any:

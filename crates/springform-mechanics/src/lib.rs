@@ -10,8 +10,10 @@
 //! finding and computation of general networks", 1974, with q = k.
 
 pub mod assembly;
+pub mod bounded;
 pub mod curve;
 pub mod embedding;
+pub mod equalisation;
 pub mod equilibrium;
 pub mod measures;
 pub mod network;

@@ -104,7 +104,7 @@ impl Measures {
     }
 }
 
-fn force_differential(smallest: f64, largest: f64) -> Option<f64> {
+pub(crate) fn force_differential(smallest: f64, largest: f64) -> Option<f64> {
     (smallest >= VANISHING_FORCE * largest && smallest > 0.0).then(|| largest / smallest)
 }
 

@@ -7,6 +7,7 @@ mod convert;
 mod evolution;
 mod measures;
 mod network;
+mod sensitivity;
 mod setting;
 mod topology;
 
@@ -22,6 +23,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<setting::Net>()?;
     module.add_class::<network::ForceStrainCurve>()?;
     module.add_class::<network::ImplicitEuler>()?;
+    module.add_class::<sensitivity::Sensitivity>()?;
+    module.add_class::<sensitivity::Equalisation>()?;
     module.add_class::<evolution::Evolution>()?;
     module.add_class::<evolution::StressSeeking>()?;
     module.add_function(wrap_pyfunction!(network::solve, module)?)?;

@@ -8,7 +8,7 @@
 //!        └ followers   around all of these: loads that follow the shape
 //! ```
 //!
-//! [`implicit_euler`] moves a net to the same equilibrium step by step. A solve returns its status; it never prints and
+//! [`sensitivity`] holds derivatives of what they find. [`implicit_euler`] moves a net to the same equilibrium step by step. A solve returns its status; it never prints and
 //! never panics on a bad net.
 
 mod descent;
@@ -20,6 +20,7 @@ mod interior;
 mod linear;
 mod mixed;
 mod newton;
+pub mod sensitivity;
 mod solver;
 mod state;
 mod supports;

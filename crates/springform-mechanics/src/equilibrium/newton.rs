@@ -161,7 +161,9 @@ impl Change {
         for bend in &hill.elements.bends {
             let [before, after] =
                 [from, to].map(|positions| bend.bending(links(bend, positions), false).energy);
-            add_part(after - before, 1e-2 * before.max(after));
+            // The energy is a difference of lengths that are far larger than itself.
+            let [a, b] = bend.lengths;
+            add_part(after - before, 0.02 * 2.0 * bend.stiffness * (a + b) / (a * b));
         }
         for (from, (to, load)) in from.iter().zip(to.iter().zip(hill.elements.loads())) {
             add_part((0..3).map(|axis| load[axis] * (from[axis] - to[axis])).sum(), 0.0);

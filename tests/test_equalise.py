@@ -1,0 +1,117 @@
+"""Equalising: the evolved net's differential is halved, only allowed factors are used."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import springform as sf
+from helpers import assert_refused, assert_untouched, in_process
+
+
+@pytest.fixture(scope="module")
+def evolved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The three-cylinder net of some 2,000 springs, evolved with few mutants a generation."""
+    run = sf.evolve(
+        sf.load("three-cylinders"),
+        population=20,
+        insertions=2,
+        types=(1, 6),
+        seed=1,
+        until_springs=2000,
+        generations=200,
+    )
+    path = tmp_path_factory.mktemp("evolved") / "evolved.toml"
+    sf.save(run.best, path)
+    return path
+
+
+def test_the_differential_of_an_evolved_net_is_halved(evolved: Path, tmp_path: Path) -> None:
+    table = tmp_path / "springs.csv"
+    report = in_process("equalise", evolved, "--bounds", "0.25,4", "--out", table, "--json").report
+    differential = report["force_differential"]
+    assert report["springs"] >= 1900
+    assert report["converged"]
+    assert differential["after"] <= differential["before"] / 2
+    assert 0.25 <= report["stiffness_factor"]["min"] <= report["stiffness_factor"]["max"] <= 4
+
+    design = sf.load(evolved)
+    assert differential["before"] == pytest.approx(
+        design.measure(design.solve()).force_differential
+    )
+    # The table alone is enough to build the tuned net.
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    nodes, network = design.nodes, design.network()
+    assert [(row["node_a"], row["node_b"]) for row in rows] == [
+        (nodes[a], nodes[b]) for a, b in network.springs.tolist()
+    ]
+    tuned = sf.Network(
+        network.positions,
+        network.springs,
+        network.fixed,
+        stiffness=[float(row["stiffness"]) for row in rows],
+    )
+    forces = sf.solve(tuned).forces
+    assert forces.max() / forces.min() == pytest.approx(differential["after"], rel=1e-6)
+    np.testing.assert_allclose(forces, [float(row["force"]) for row in rows], rtol=1e-6)
+
+
+def test_a_few_values_are_the_only_ones(evolved: Path) -> None:
+    report = in_process("equalise", evolved, "--values", "4,1,2", "--json").report
+    assert set(report["springs_by_factor"]) <= {"1", "2", "4"}
+    assert sum(report["springs_by_factor"].values()) == report["springs"]
+    differential = report["force_differential"]
+    assert differential["after"] <= differential["before"] / 1.5
+
+
+@pytest.mark.parametrize("scene", ["one-cylinder", "three-cylinders"])
+def test_equalising_gives_the_same_bits_again(scene: str) -> None:
+    first, second = (sf.equalise(sf.load(scene), bounds=(0.5, 2)) for _ in range(2))
+    assert first.factors.tobytes() == second.factors.tobytes()
+    assert first.after < first.before
+    assert 0.5 <= first.factors.min() <= first.factors.max() <= 2
+
+
+def test_steps_are_told_and_may_be_limited() -> None:
+    told: list[sf.EqualiseStep] = []
+    tuned = sf.equalise(sf.load("one-cylinder"), iterations=5, on_step=told.append)
+    assert [step.iterations for step in told] == [1, 2, 3, 4, 5]
+    assert not tuned.converged
+    assert tuned.after <= tuned.before
+    as_it_is = sf.equalise(sf.load("one-cylinder"), iterations=0)
+    assert as_it_is.after == as_it_is.before
+    assert (as_it_is.factors == 1).all()
+
+
+def test_an_interrupt_comes_through() -> None:
+    def interrupt(step: sf.EqualiseStep) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sf.equalise(sf.load("one-cylinder"), on_step=interrupt)
+
+
+@pytest.mark.parametrize(
+    ("words", "parts"),
+    [
+        (["--bounds", "4,1"], ["--bounds", "lower"]),
+        (["--bounds", "2,4"], ["--bounds", "as it is"]),
+        (["--bounds", "0,4"], ["--bounds", "above 0"]),
+        (["--bounds", "nan,4"], ["--bounds", "finite"]),
+        (["--bounds", "1"], ["--bounds", "two factors"]),
+        (["--bounds", "a,b"], ["--bounds", "a,b"]),
+        (["--values", "2,4"], ["--values", "as it is"]),
+        (["--values", "1"], ["--values", "two different"]),
+        (["--values", ""], ["--values"]),
+        (["--values", "1,2", "--bounds", "1,2"], ["--values", "--bounds"]),
+        (["--out", "x.pdf"], ["x.pdf", ".csv"]),
+        (["--out", "missing/x.csv"], ["missing"]),
+    ],
+)
+def test_bad_options_are_refused_on_one_line(
+    words: list[str], parts: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = assert_untouched(tmp_path, lambda: in_process("equalise", "one-cylinder", *words))
+    assert_refused(result, *parts)
