@@ -7,21 +7,32 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, design_file, scenes
 from .arrays import Floats
-from .design_schema import Arc, DesignFile, ForestSection, Overrides
+from .design_schema import Anchor, Arc, DesignFile, ForestSection, Overrides
 from .errors import DesignError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
 from .network import TOLERANCE, Equilibrium, Network, Solver, solve
+from .rigging_schema import NodeLoad, Pressure, Rod, SpringGroup
 
 Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""
+
+
+class _Sections(NamedTuple):
+    """What the core takes of a design file besides the framework and the forest."""
+
+    groups: tuple[SpringGroup, ...]
+    rods: tuple[Rod, ...]
+    node_loads: tuple[NodeLoad, ...]
+    pressures: tuple[Pressure, ...]
+    anchors: tuple[Anchor, ...]
 
 
 METHODS: tuple[str, ...] = get_args(DesignFile.model_fields["method"].annotation)
@@ -148,7 +159,7 @@ class Design:
     @cached_property
     def _grown(self) -> tuple[_core.Net, Network]:
         net, arrays = self._build(lambda: self.setting.grow(self.closed.forest))
-        return net, Network(**arrays)
+        return net, Network.from_core(arrays)
 
     @property
     def _net(self) -> _core.Net:
@@ -311,6 +322,13 @@ class Design:
             list(file.framework.mesh.vertices) if file.framework.mesh else None,
             file.springs.stiffness,
             file.springs.ring_factor,
+            _Sections(
+                file.springs.groups,
+                file.rods,
+                file.loads.nodes,
+                file.loads.pressures,
+                file.framework.anchors,
+            ),
             TOLERANCE,
         )
 

@@ -10,11 +10,13 @@
 //! finding and computation of general networks", 1974, with q = k.
 
 pub mod assembly;
+pub mod border;
 pub mod curve;
 pub mod embedding;
 pub mod equilibrium;
 pub mod measures;
 pub mod network;
+pub mod rigging;
 pub mod rod;
 pub mod sparse;
 pub mod stage;

@@ -7,6 +7,7 @@ mod convert;
 mod evolution;
 mod measures;
 mod network;
+mod rigging;
 mod setting;
 mod topology;
 
