@@ -15,6 +15,7 @@ from .evolution import Progress, SeekStep, evolve, resume, seek
 from .files import WriteError
 from .network import Equilibrium, Network, Rod, animate, residuals, solve
 from .parameters import Parameters
+from .readings import Reading, read_spring
 from .run import Run, open_run
 from .scenes import names as scene_names
 from .spring_laws import Curve
@@ -31,6 +32,7 @@ __all__ = [
     "Network",
     "Parameters",
     "Progress",
+    "Reading",
     "Rod",
     "Run",
     "RunError",
@@ -42,6 +44,7 @@ __all__ = [
     "evolve",
     "load",
     "open_run",
+    "read_spring",
     "residuals",
     "resume",
     "save",

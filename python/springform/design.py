@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, get_args
@@ -181,6 +181,11 @@ class Design:
         return self._net.nodes
 
     @property
+    def cords(self) -> slice:
+        """The net's own springs among the network's; the links of rods stand behind them."""
+        return slice(0, len(self._net.ring))
+
+    @property
     def anchors(self) -> NDArray[np.uint32]:
         """Node of every anchor, in the order of `anchor_names`."""
         return self._net.anchors
@@ -261,6 +266,45 @@ class Design:
             raise DesignError(f"there is no method '{method}'; use {known}", key="method")
         file = self.to_file().model_copy(update={"method": method})
         return Design(file, source=self._source)
+
+    def with_springs(self, **group: Any) -> Design:
+        """Return the design with one more group of springs, by the keys of `springs.groups`.
+
+        Such as ``design.with_springs(axial_stiffness=9.8, rest_ratio=0.8, diameter=0.0025)`` for
+        all springs, or ``design.with_springs(along=["ring"], stiffness=3.0)`` for some. Later
+        groups win. Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("springs", "groups"), group)
+
+    def with_rod(self, along: str, **rod: Any) -> Design:
+        """Return the design with a rod along a boundary, by the keys of `rods`.
+
+        Such as ``design.with_rod("tube.start", bending_stiffness=20.0, axial_stiffness=5e5)``.
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("rods",), {"along": along, **rod})
+
+    def with_load(self, force: Sequence[float], **place: Any) -> Design:
+        """Return the design with a force [N] on a node: `node`, `vertex`, or `ring` and `index`.
+
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("loads", "nodes"), {**place, "force": list(force)})
+
+    def with_pressure(self, pressure: float, **cells: Any) -> Design:
+        """Return the design with pressure [Pa] on cells, by the keys of `loads.pressures`.
+
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("loads", "pressures"), {**cells, "pressure": pressure})
+
+    def _with_section(self, path: tuple[str, ...], section: dict[str, Any]) -> Design:
+        data = design_file.to_data(self.to_file())
+        table = data
+        for key in path[:-1]:
+            table = table.setdefault(key, {})
+        table.setdefault(path[-1], []).append(section)
+        return Design(design_file.from_data(data, self._source), source=self._source)
 
     def renamed(self, name: str) -> Design:
         """Return the design under another name. Raises `DesignError`: not one line of text."""

@@ -79,27 +79,16 @@ CurvePoints = Annotated[
 ]
 
 
-class _Sized(Section):
-    """Something with a cross-section."""
-
-    diameter: _Positive | None = None
-    """Diameter of the round cross-section [m], for stresses."""
-    area: _Positive | None = None
-    """Area of the cross-section [m2], instead of a diameter."""
-
-    @property
-    def section_area(self) -> float | None:
-        """Area of the cross-section [m2]."""
-        return self.area if self.diameter is None else math.pi * self.diameter**2 / 4
-
-    @model_validator(mode="after")
-    def _check_section(self) -> Self:
-        if self.diameter is not None and self.area is not None:
-            raise fault(("area",), "cannot stand beside a diameter; remove one of the two")
-        return self
+def _section_area(diameter: float | None, area: float | None) -> float | None:
+    return area if diameter is None else math.pi * diameter**2 / 4
 
 
-class SpringGroup(_Sized):
+def _check_section(diameter: float | None, area: float | None) -> None:
+    if diameter is not None and area is not None:
+        raise fault(("area",), "cannot stand beside a diameter; remove one of the two")
+
+
+class SpringGroup(Section):
     """What some springs are made of. A spring is in the group if it meets all that is said of it:
     parts, types and levels of one of its cells, along, pairs; all springs are if nothing is.
 
@@ -142,12 +131,21 @@ class SpringGroup(_Sized):
 
     sense: Literal["tension", "both", "compression"] | None = None
     """Whether the springs pull only, which is so unless said, push only, or do both."""
+    diameter: _Positive | None = None
+    """Diameter of the round cross-section [m], for stresses."""
+    area: _Positive | None = None
+    """Area of the cross-section [m2], instead of a diameter."""
     self_weight: _NotNegative | None = None
     """Weight along -z [N/m], by unstressed length; by length where that is 0."""
     thermal_expansion: float | None = None
     """Strain for a degree [1/K]."""
     temperature: float | None = None
     """Temperature above the one at which lengths are given [K]: L0 (1 + expansion temperature)."""
+
+    @property
+    def section_area(self) -> float | None:
+        """Area of the cross-section [m2]."""
+        return _section_area(self.diameter, self.area)
 
     def said(self, keys: tuple[str, ...]) -> list[str]:
         """Return those of the keys that the group gives."""
@@ -160,6 +158,7 @@ class SpringGroup(_Sized):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        _check_section(self.diameter, self.area)
         for keys in (LAWS, REST_LENGTHS):
             if len(given := self.said(keys)) > 1:
                 raise fault((given[1],), f"cannot stand beside {given[0]}; remove one of the two")
@@ -187,7 +186,7 @@ class Springs(Section):
     """Springs of other laws; later groups win."""
 
 
-class Rod(_Sized):
+class Rod(Section):
     """A rod that bends, through all nodes of the net along a boundary; it is no cord of the net."""
 
     name: Title | None = None
@@ -201,8 +200,22 @@ class Rod(_Sized):
     length: _Positive | None = None
     """Unstressed length of the whole rod [m], the same for each edge of the boundary; without it
     every link is as long as it is drawn."""
+    diameter: _Positive | None = None
+    """Diameter of the round cross-section [m], for stresses."""
+    area: _Positive | None = None
+    """Area of the cross-section [m2], instead of a diameter."""
     self_weight: _NotNegative = 0.0
     """Weight along -z [N/m], by unstressed length."""
+
+    @property
+    def section_area(self) -> float | None:
+        """Area of the cross-section [m2]."""
+        return _section_area(self.diameter, self.area)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        _check_section(self.diameter, self.area)
+        return self
 
 
 class NodeLoad(Section):
