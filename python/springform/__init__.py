@@ -17,6 +17,7 @@ from .evolution import Progress, SeekStep, evolve, resume, seek
 from .files import WriteError
 from .network import Equilibrium, Network, Rod, animate, residuals, solve
 from .parameters import Parameters
+from .readings import Reading, read_spring
 from .run import Run, open_run
 from .scenes import names as scene_names
 from .spring_laws import Curve
@@ -37,6 +38,7 @@ __all__ = [
     "Parameters",
     "Progress",
     "Response",
+    "Reading",
     "Rod",
     "Run",
     "RunError",
@@ -50,6 +52,7 @@ __all__ = [
     "evolve",
     "load",
     "open_run",
+    "read_spring",
     "residuals",
     "resume",
     "save",

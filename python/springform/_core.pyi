@@ -182,13 +182,28 @@ class _Rod(Protocol):
     def bending_stiffness(self) -> float:
         """EI [N m2]."""
 
-class _Arrays(TypedDict):
-    positions: _Floats
-    springs: _Numbers
-    fixed: NDArray[np.bool_]
-    stiffness: _Floats
-    rest_length: _Floats
-    loads: _Floats
+class _Sections(Protocol):
+    """What a design file says besides framework and forest, section by section."""
+
+    @property
+    def groups(self) -> Sequence[Any]:
+        """Groups of springs."""
+
+    @property
+    def rods(self) -> Sequence[Any]:
+        """Rods along boundaries."""
+
+    @property
+    def node_loads(self) -> Sequence[Any]:
+        """Forces on nodes."""
+
+    @property
+    def pressures(self) -> Sequence[Any]:
+        """Pressures on cells."""
+
+    @property
+    def anchors(self) -> Sequence[Any]:
+        """Anchors with their supports."""
 
 class _Measures(TypedDict):
     springs: int
@@ -239,6 +254,7 @@ class Setting:
         drawn: list[_Vector] | None,
         stiffness: float,
         ring_factor: float,
+        sections: _Sections,
         tolerance: float,
     ) -> Setting:
         """Take types (name, springs, perimeter, fan) and anchors' vertices and positions [m].
@@ -270,8 +286,8 @@ class Setting:
     def drawn(self) -> _Floats:
         """Return the drawn positions of base vertices, (v, 3) [m]."""
 
-    def grow(self, forest: Forest) -> tuple[Net, _Arrays]:
-        """Return the net of a closed forest, and its network's arrays."""
+    def grow(self, forest: Forest) -> tuple[Net, dict[str, Any]]:
+        """Return the net of a closed forest, and what its network holds, by name."""
 
     def neighbours(self, forest: Forest, address: str) -> list[str]:
         """Return the expressed cells that share an edge with an expressed cell."""

@@ -4,24 +4,35 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, design_file, scenes
 from .arrays import Floats
-from .design_schema import Arc, DesignFile, ForestSection, Overrides
+from .design_schema import Anchor, Arc, DesignFile, ForestSection, Overrides
 from .errors import DesignError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
 from .network import TOLERANCE, Equilibrium, Network, Solver, solve
+from .rigging_schema import NodeLoad, Pressure, Rod, SpringGroup
 
 Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """(starts, items): the items of group g are ``items[starts[g]:starts[g + 1]]``."""
+
+
+class _Sections(NamedTuple):
+    """What the core takes of a design file besides the framework and the forest."""
+
+    groups: tuple[SpringGroup, ...]
+    rods: tuple[Rod, ...]
+    node_loads: tuple[NodeLoad, ...]
+    pressures: tuple[Pressure, ...]
+    anchors: tuple[Anchor, ...]
 
 
 METHODS: tuple[str, ...] = get_args(DesignFile.model_fields["method"].annotation)
@@ -148,7 +159,7 @@ class Design:
     @cached_property
     def _grown(self) -> tuple[_core.Net, Network]:
         net, arrays = self._build(lambda: self.setting.grow(self.closed.forest))
-        return net, Network(**arrays)
+        return net, Network.from_core(arrays)
 
     @property
     def _net(self) -> _core.Net:
@@ -168,6 +179,11 @@ class Design:
     def nodes(self) -> list[str]:
         """Keys of the nodes, in the order of the network's: ``v12``, ``e7:3/8``, ``f5:1/2,3/4``."""
         return self._net.nodes
+
+    @property
+    def cords(self) -> slice:
+        """The net's own springs among the network's; the links of rods stand behind them."""
+        return slice(0, len(self._net.ring))
 
     @property
     def anchors(self) -> NDArray[np.uint32]:
@@ -251,6 +267,45 @@ class Design:
         file = self.to_file().model_copy(update={"method": method})
         return Design(file, source=self._source)
 
+    def with_springs(self, **group: Any) -> Design:
+        """Return the design with one more group of springs, by the keys of `springs.groups`.
+
+        Such as ``design.with_springs(axial_stiffness=9.8, rest_ratio=0.8, diameter=0.0025)`` for
+        all springs, or ``design.with_springs(along=["ring"], stiffness=3.0)`` for some. Later
+        groups win. Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("springs", "groups"), group)
+
+    def with_rod(self, along: str, **rod: Any) -> Design:
+        """Return the design with a rod along a boundary, by the keys of `rods`.
+
+        Such as ``design.with_rod("tube.start", bending_stiffness=20.0, axial_stiffness=5e5)``.
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("rods",), {"along": along, **rod})
+
+    def with_load(self, force: Sequence[float], **place: Any) -> Design:
+        """Return the design with a force [N] on a node: `node`, `vertex`, or `ring` and `index`.
+
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("loads", "nodes"), {**place, "force": list(force)})
+
+    def with_pressure(self, pressure: float, **cells: Any) -> Design:
+        """Return the design with pressure [Pa] on cells, by the keys of `loads.pressures`.
+
+        Raises `DesignError`: a key or value that a design file may not have.
+        """
+        return self._with_section(("loads", "pressures"), {**cells, "pressure": pressure})
+
+    def _with_section(self, path: tuple[str, ...], section: dict[str, Any]) -> Design:
+        data = design_file.to_data(self.to_file())
+        table = data
+        for key in path[:-1]:
+            table = table.setdefault(key, {})
+        table.setdefault(path[-1], []).append(section)
+        return Design(design_file.from_data(data, self._source), source=self._source)
+
     def renamed(self, name: str) -> Design:
         """Return the design under another name. Raises `DesignError`: not one line of text."""
         if not name.strip() or not name.isprintable():
@@ -311,6 +366,13 @@ class Design:
             list(file.framework.mesh.vertices) if file.framework.mesh else None,
             file.springs.stiffness,
             file.springs.ring_factor,
+            _Sections(
+                file.springs.groups,
+                file.rods,
+                file.loads.nodes,
+                file.loads.pressures,
+                file.framework.anchors,
+            ),
             TOLERANCE,
         )
 

@@ -137,12 +137,17 @@ def _format_of(path: str | os.PathLike[str]) -> Format:
     raise DesignError("a design file ends in .toml or .json; rename it", file=path)
 
 
+def to_data(design_file: DesignFile) -> dict[str, Any]:
+    """Return a design as dictionaries, lists, numbers and texts, which `from_data` takes."""
+    return _without_defaults(design_file)
+
+
 _ALWAYS_WRITTEN = {"springform", "name", "method", "grid"}
 
 
 def dump(design_file: DesignFile, format: Format) -> str:
     """Return the canonical text of a design, in TOML or JSON."""
-    data = _without_defaults(design_file)
+    data = to_data(design_file)
     return json_text(data) if format == "json" else toml_text(data)
 
 

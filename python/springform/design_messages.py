@@ -8,8 +8,9 @@ from typing import get_args
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
-from .design_schema import NAME_PATTERN, SPRING_PATTERN, DesignFile
+from .design_schema import DesignFile
 from .key_lines import KeyPath
+from .schema_base import NAME_PATTERN, SPRING_PATTERN
 from .wording import nearest, shown
 
 _MESSAGES = {

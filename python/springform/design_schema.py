@@ -11,19 +11,28 @@ from collections.abc import Iterator
 from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import (
-    AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     WithJsonSchema,
     field_validator,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
 
-from .errors import printable
 from .key_lines import KeyPath
+from .rigging_schema import Loads, Rod, Springs, check_direction
+from .schema_base import (
+    SPRING_PATTERN,
+    Count,
+    Face,
+    Name,
+    Number,
+    Point,
+    Section,
+    Text,
+    Title,
+    check_node_pairs,
+    fault,
+)
 from .wording import index_range, nearest, shown
 
 VERSION = 1
@@ -38,69 +47,8 @@ MAXIMUM_CELLS = 4_000_000
 BUILT_IN_CELL_TYPES = ("null", "quad", "braced", "diagonal", "strip", "inscribed", "dynamic")
 """Names of the built-in cell types, by number."""
 
-_MAXIMUM_NUMBER = 2**32 - 1  # the core counts cells and vertices in 32 bits
-NAME_PATTERN = r"^[a-z][a-z0-9_]*$"
-"""What cylinders, sheets and cell types may be called."""
 
-SPRING_PATTERN = r"^(?:c[0-3]|m[0-3]|x)-(?:c[0-3]|m[0-3]|x)$"
-"""How a spring of a cell type is written."""
-
-_NODE = r"(?:v[0-9]+|e[0-9]+:[0-9]+/[0-9]+|f[0-9]+:[0-9]+/[0-9]+,[0-9]+/[0-9]+)"
-
-
-def _fault(path: KeyPath, message: str) -> PydanticCustomError:
-    """An error at `path`, seen from the model that raises it."""
-    return PydanticCustomError("design", "{message}", {"message": printable(message), "path": path})
-
-
-def _rows_of(count: int, what: str) -> BeforeValidator:
-    def check(value: object) -> object:
-        if not isinstance(value, (list, tuple)) or len(value) != count:
-            raise _fault((), f"must be {what}, not {shown(value)}")
-        return value
-
-    return BeforeValidator(check)
-
-
-def _check_text(value: str) -> str:
-    try:
-        value.encode()
-    except UnicodeEncodeError:
-        raise _fault(
-            (), f"must be a text of whole Unicode characters, not {shown(value)}"
-        ) from None
-    return value
-
-
-def _check_title(value: str) -> str:
-    if not value.strip() or not value.isprintable():
-        raise _fault((), f"must be a text on one line, not {shown(value)}")
-    return value
-
-
-Name = Annotated[str, Field(pattern=NAME_PATTERN)]
-Text = Annotated[str, AfterValidator(_check_text)]  # JSON can escape half a character
-Title = Annotated[str, Field(min_length=1), AfterValidator(_check_title)]
-Spring = Annotated[str, Field(pattern=SPRING_PATTERN)]
-Number = Annotated[int, Field(ge=0, le=_MAXIMUM_NUMBER)]
-Count = Annotated[int, Field(ge=1, le=_MAXIMUM_NUMBER)]
-Point = Annotated[
-    tuple[float, float, float], _rows_of(3, "three numbers [x, y, z]"), Field(strict=False)
-]
-Face = Annotated[
-    tuple[Number, Number, Number, Number],
-    _rows_of(4, "four vertex numbers [a, b, c, d]"),
-    Field(strict=False),
-]
-
-
-class _Section(BaseModel):
-    model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
-    )
-
-
-class Cylinder(_Section):
+class Cylinder(Section):
     """A cylinder of cells, closed around, with a free ring `NAME.start` and one `NAME.end`."""
 
     name: Name
@@ -111,7 +59,7 @@ class Cylinder(_Section):
     """Number of rows of edges between the two rings."""
 
 
-class Sheet(_Section):
+class Sheet(Section):
     """An open patch of cells with the boundaries `NAME.start`, `.end`, `.left` and `.right`."""
 
     name: Name
@@ -123,7 +71,7 @@ class Sheet(_Section):
     have half as many edges."""
 
 
-class Arc(_Section):
+class Arc(Section):
     """A run of edges on a boundary."""
 
     ring: str
@@ -134,7 +82,7 @@ class Arc(_Section):
     """Number of edges; on a closed ring the indices run on past the last to 0."""
 
 
-class Join(_Section):
+class Join(Section):
     """Two arcs of the same length that become one, edge by edge."""
 
     first: Arc
@@ -147,7 +95,7 @@ class Join(_Section):
     """On a dia-grid: whether a cord runs along the seam, between half diamonds."""
 
 
-class Anchor(_Section):
+class Anchor(Section):
     """A node that is held in space: `ring` and `index`, or `vertex`."""
 
     name: Title | None = None
@@ -159,21 +107,33 @@ class Anchor(_Section):
     vertex: Number | None = None
     """Number of the base vertex, instead of `ring` and `index`."""
     position: Point
-    """Where the node is held [m]."""
+    """Where the node is held [m], or where it starts along what it is free to follow."""
+    holds: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = "xyz"
+    """Along which axes the node is held."""
+    line: Point | None = None
+    """Direction of a line through `position` on which the node slides."""
+    plane: Point | None = None
+    """Normal of a plane through `position` in which the node slides."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        check_direction("line", self.line)
+        check_direction("plane", self.plane)
+        if self.line is not None and self.plane is not None:
+            raise fault((), "slides on a line and in a plane; give line or plane")
+        if self.holds != "xyz" and (self.line is not None or self.plane is not None):
+            raise fault(("holds",), "cannot stand beside line or plane; remove one of them")
         if self.vertex is not None:
             if self.ring is not None or self.index is not None:
-                raise _fault((), "has a vertex and a ring; give vertex, or ring and index")
+                raise fault((), "has a vertex and a ring; give vertex, or ring and index")
         elif self.ring is None:
-            raise _fault((), "is on no node; give ring and index, or vertex")
+            raise fault((), "is on no node; give ring and index, or vertex")
         elif self.index is None:
-            raise _fault((), "has a ring without an index; add index")
+            raise fault((), "has a ring without an index; add index")
         return self
 
 
-class Mesh(_Section):
+class Mesh(Section):
     """A base mesh of quads, instead of cylinders, sheets and joins."""
 
     vertices: Annotated[tuple[Point, ...], Field(strict=False)]
@@ -187,16 +147,16 @@ class Mesh(_Section):
         for number, face in enumerate(self.faces):
             for corner, vertex in enumerate(face):
                 if vertex >= len(used):
-                    raise _fault(
+                    raise fault(
                         ("faces", number, corner),
                         f"{vertex} is no vertex; the mesh has {index_range(len(used), 'vertices')}",
                     )
                 used[vertex] = True
             if len(set(face)) < 4:
-                raise _fault(("faces", number), "has the same corner twice; give four different")
+                raise fault(("faces", number), "has the same corner twice; give four different")
         loose = used.find(0)
         if loose >= 0:
-            raise _fault(("vertices", loose), f"vertex {loose} is in no face; use it or remove it")
+            raise fault(("vertices", loose), f"vertex {loose} is in no face; use it or remove it")
         return self
 
 
@@ -208,7 +168,7 @@ class Boundary(NamedTuple):
     closed: bool
 
 
-class Framework(_Section):
+class Framework(Section):
     """The metatopology: cylinders and sheets with their joins, or a mesh; and the anchors."""
 
     grid: Literal["quad", "dia"] = "quad"
@@ -276,11 +236,11 @@ class Framework(_Section):
         if self.mesh:
             for key in ("cylinders", "sheets", "joins"):
                 if getattr(self, key):
-                    raise _fault((key,), "cannot stand beside a mesh; remove one of the two")
+                    raise fault((key,), "cannot stand beside a mesh; remove one of the two")
             if self.grid == "dia":
-                raise _fault(("grid",), 'must be "quad" for a mesh, whose cells are as drawn')
+                raise fault(("grid",), 'must be "quad" for a mesh, whose cells are as drawn')
         elif not self.cylinders and not self.sheets:
-            raise _fault((), "has no cylinders, sheets or mesh; add one of them")
+            raise fault((), "has no cylinders, sheets or mesh; add one of them")
 
         seen = set()
         named: dict[str, tuple[Cylinder | Sheet, ...]]
@@ -288,14 +248,14 @@ class Framework(_Section):
         for key, parts in named.items():
             for number, part in enumerate(parts):
                 if part.name in seen:
-                    raise _fault(
+                    raise fault(
                         (key, number, "name"), f"{part.name} is used twice; choose another name"
                     )
                 seen.add(part.name)
         if self.grid == "dia":
             for number, sheet in enumerate(self.sheets):
                 if sheet.along % 2:
-                    raise _fault(
+                    raise fault(
                         ("sheets", number, "along"),
                         f"must be even on a dia-grid, not {sheet.along}; "
                         f"write {sheet.along - 1 or 2} or {sheet.along + 1 + (sheet.along == 1)}",
@@ -304,7 +264,7 @@ class Framework(_Section):
     def _check_size(self) -> None:
         count = self.cell_count()
         if count > MAXIMUM_CELLS:
-            raise _fault(
+            raise fault(
                 ("level",) if self.level else (),
                 f"makes {count} cells, more than {MAXIMUM_CELLS}; "
                 f"{'lower the level' if self.level else 'make the framework coarser'}",
@@ -315,39 +275,39 @@ class Framework(_Section):
             boundary = _boundary((*path, side, "ring"), arc.ring, boundaries)
             last = boundary.vertices - 1 if boundary.closed else boundary.edges - 1
             if arc.start > last:
-                raise _fault(
+                raise fault(
                     (*path, side, "start"),
                     f"{arc.start} is off the boundary; on {arc.ring} an arc starts at 0 to {last}",
                 )
             room = boundary.edges if boundary.closed else boundary.edges - arc.start
             if arc.length > room:
                 where = "" if boundary.closed else f" from {arc.start} on"
-                raise _fault(
+                raise fault(
                     (*path, side, "length"),
                     f"{arc.length} is too long; {arc.ring} has {room} edges{where}",
                 )
         if join.first.length != join.second.length:
-            raise _fault(
+            raise fault(
                 (*path, "second", "length"),
                 f"{join.second.length} differs from the first arc's {join.first.length}; "
                 "make both arcs equally long",
             )
         if join.first == join.second:
-            raise _fault(path, "joins an arc with itself; name two different arcs")
+            raise fault(path, "joins an arc with itself; name two different arcs")
 
     def _check_anchor(self, path: KeyPath, anchor: Anchor, boundaries: dict[str, Boundary]) -> None:
         if anchor.ring is not None and anchor.index is not None:
             if self.mesh:
-                raise _fault((*path, "ring"), "a mesh has no rings; give vertex instead")
+                raise fault((*path, "ring"), "a mesh has no rings; give vertex instead")
             count = _boundary((*path, "ring"), anchor.ring, boundaries).vertices
             if anchor.index >= count:
-                raise _fault(
+                raise fault(
                     (*path, "index"),
                     f"{anchor.index} is out of range; {anchor.ring} has "
                     f"{index_range(count, 'vertices')}",
                 )
         elif self.mesh and anchor.vertex is not None and anchor.vertex >= len(self.mesh.vertices):
-            raise _fault(
+            raise fault(
                 (*path, "vertex"),
                 f"{anchor.vertex} is out of range; the mesh has "
                 f"{index_range(len(self.mesh.vertices), 'vertices')}",
@@ -356,7 +316,7 @@ class Framework(_Section):
     def _check_anchors_differ(self) -> None:
         if len(self.anchors) < 2:
             count = ("no anchor", "one anchor")[len(self.anchors)]
-            raise _fault(("anchors",), f"{count}: a net needs two or more; add anchors")
+            raise fault(("anchors",), f"{count}: a net needs two or more; add anchors")
         names: dict[str, int] = {}
         places: dict[tuple[str | int | None, int | None], int] = {}
         corners = dict(self._corners())
@@ -364,7 +324,7 @@ class Framework(_Section):
         for number, (name, anchor) in enumerate(zip(anchor_names, self.anchors, strict=True)):
             other = names.setdefault(name, number)
             if other != number:
-                raise _fault(
+                raise fault(
                     ("anchors", number, "name"),
                     f"{name} is also the name of anchor {other + 1}; choose another name",
                 )
@@ -373,7 +333,7 @@ class Framework(_Section):
                 place = corners.get((anchor.ring, anchor.index), (anchor.ring, anchor.index))
             other = places.setdefault(place, number)
             if other != number:
-                raise _fault(
+                raise fault(
                     ("anchors", number),
                     f"{name} is on the same node as {anchor_names[other]}; remove one",
                 )
@@ -395,7 +355,7 @@ def _check_cell_numbers(value: object) -> object:
     for key, notation in value.items():
         if isinstance(key, str):
             if not re.fullmatch(r"0|[1-9][0-9]{0,9}", key):
-                raise _fault((key,), "is not the number of a cell; write a whole number")
+                raise fault((key,), "is not the number of a cell; write a whole number")
             cells[int(key)] = notation
         else:
             cells[key] = notation
@@ -404,11 +364,11 @@ def _check_cell_numbers(value: object) -> object:
 
 def _check_number_or_name(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, (int, str)):
-        raise _fault((), f"must be a type's number or name, not {shown(value)}")
+        raise fault((), f"must be a type's number or name, not {shown(value)}")
     return value
 
 
-class ForestSection(_Section):
+class ForestSection(Section):
     """The genotype: what stands in the top-level cells."""
 
     type: Annotated[int | str, BeforeValidator(_check_number_or_name)] = 1
@@ -423,7 +383,7 @@ class ForestSection(_Section):
                 "additionalProperties": False,
             }
         ),
-    ] = {}
+    ] = Field(default={})
     """Cell notation by the number of the top-level cell."""
 
     @field_validator("cells")
@@ -432,7 +392,7 @@ class ForestSection(_Section):
         return dict(sorted(cells.items()))
 
 
-class CellTypeDefinition(_Section):
+class CellTypeDefinition(Section):
     """A cell type of your own: springs between the named points of a cell."""
 
     springs: Annotated[
@@ -450,34 +410,14 @@ class CellTypeDefinition(_Section):
         for number, spring in enumerate(self.springs):
             ends = frozenset(spring.split("-"))
             if len(ends) < 2:
-                raise _fault(("springs", number), f"{spring} has one end; name two points")
+                raise fault(("springs", number), f"{spring} has one end; name two points")
             if ends in seen:
-                raise _fault(("springs", number), f"{spring} is there twice; remove one")
+                raise fault(("springs", number), f"{spring} is there twice; remove one")
             seen.add(ends)
         return self
 
 
-class Springs(_Section):
-    """What every spring is made of."""
-
-    stiffness: Annotated[float, Field(gt=0)] = 1.0
-    """Force per length [N/m]."""
-    ring_factor: Annotated[float, Field(gt=0)] = 1.0
-    """Factor on the stiffness of springs along free rings and free edges of sheets."""
-
-
-def _check_node_pair(value: str) -> str:
-    if not re.fullmatch(f"{_NODE} {_NODE}", value):
-        raise _fault(
-            (), f'{shown(value)} does not name two nodes; write it like "v1 v17" or "v3 e7:1/2"'
-        )
-    first, second = value.split(" ")
-    if first == second:
-        raise _fault((), f"{shown(value)} names one node twice; name two nodes")
-    return value
-
-
-class Overrides(_Section):
+class Overrides(Section):
     """Springs that a designer added or cut by hand, each as two node keys.
 
     A node key is `v12` (base vertex), `e7:3/8` (on a base edge) or `f5:1/2,3/4` (in a base face).
@@ -491,25 +431,20 @@ class Overrides(_Section):
     @field_validator("added", "cut")
     @classmethod
     def _check(cls, pairs: tuple[str, ...]) -> tuple[str, ...]:
-        for number, pair in enumerate(pairs):
-            try:
-                _check_node_pair(pair)
-            except PydanticCustomError as error:
-                raise _fault((number,), (error.context or {})["message"]) from None
-        return pairs
+        return check_node_pairs(pairs)
 
 
 def _check_version(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, int):
-        raise _fault((), f"must be the format version, {VERSION}, not {shown(value)}")
+        raise fault((), f"must be the format version, {VERSION}, not {shown(value)}")
     if value != VERSION:
-        raise _fault(
+        raise fault(
             (), f"format version {shown(value)} is not known here; this program reads {VERSION}"
         )
     return value
 
 
-class DesignFile(_Section):
+class DesignFile(Section):
     """A design of a tensile net, as it stands in a file."""
 
     springform: Annotated[Literal[1], BeforeValidator(_check_version)]
@@ -524,10 +459,14 @@ class DesignFile(_Section):
     """The metatopology and its anchors."""
     forest: ForestSection = ForestSection()
     """The cells; without it all are of type 1 and uniform."""
-    cell_types: dict[Name, CellTypeDefinition] = {}
+    cell_types: dict[Name, CellTypeDefinition] = Field(default={})
     """Cell types of your own, by name."""
     springs: Springs = Springs()
     """What the springs are made of."""
+    rods: Annotated[tuple[Rod, ...], Field(strict=False)] = ()
+    """Rods that bend, along boundaries."""
+    loads: Loads = Loads()
+    """What pulls and presses on the net, besides its springs' weight."""
     overrides: Overrides = Overrides()
     """Springs added and cut by hand."""
 
@@ -538,7 +477,7 @@ class DesignFile(_Section):
     ) -> dict[str, CellTypeDefinition]:
         for name in types:
             if name in BUILT_IN_CELL_TYPES:
-                raise _fault((name,), f"{name} is a built-in type; choose another name")
+                raise fault((name,), f"{name} is a built-in type; choose another name")
         return dict(sorted(types.items()))
 
     @model_validator(mode="after")
@@ -546,17 +485,49 @@ class DesignFile(_Section):
         kind = self.forest.type
         path = ("forest", "type")
         if isinstance(kind, str) and kind not in self.cell_types:
-            raise _fault(path, f"no cell type is called {kind}; {nearest(kind, self.cell_types)}")
+            raise fault(path, f"no cell type is called {kind}; {nearest(kind, self.cell_types)}")
         if isinstance(kind, int) and not 0 <= kind < len(BUILT_IN_CELL_TYPES):
-            raise _fault(
+            raise fault(
                 path,
                 f"no cell type has the number {shown(kind)}; "
                 f"write 0 to {len(BUILT_IN_CELL_TYPES) - 1}, or a name from cell_types",
             )
+        self._check_places()
         return self
+
+    def _check_places(self) -> None:
+        """Refuse names of parts and boundaries that the framework lacks."""
+        framework = self.framework
+        parts = [one.name for one in framework.cylinders] + [one.name for one in framework.sheets]
+        boundaries = framework.boundaries()
+        chosen: list[tuple[KeyPath, tuple[str, ...] | None]] = []
+        for number, group in enumerate(self.springs.groups):
+            path: KeyPath = ("springs", "groups", number)
+            chosen.append(((*path, "parts"), group.parts))
+            for at, line in enumerate(group.along or ()):
+                if line not in ("ring", "seam"):
+                    _boundary((*path, "along", at), line, boundaries)
+        for number, pressure in enumerate(self.loads.pressures):
+            chosen.append((("loads", "pressures", number, "parts"), pressure.parts))
+        for path, names in chosen:
+            for at, name in enumerate(names or ()):
+                if name not in parts:
+                    hint = nearest(name, parts)
+                    raise fault((*path, at), f"no part is called {shown(name)}; {hint}")
+        for number, rod in enumerate(self.rods):
+            _boundary(("rods", number, "along"), rod.along, boundaries)
+        for number, load in enumerate(self.loads.nodes):
+            if load.ring is not None and load.index is not None:
+                path = ("loads", "nodes", number)
+                count = _boundary((*path, "ring"), load.ring, boundaries).vertices
+                if load.index >= count:
+                    have = index_range(count, "vertices")
+                    raise fault(
+                        (*path, "index"), f"{load.index} is out of range; {load.ring} has {have}"
+                    )
 
 
 def _boundary(path: KeyPath, name: str, boundaries: dict[str, Boundary]) -> Boundary:
     if name not in boundaries:
-        raise _fault(path, f"no boundary is called {shown(name)}; {nearest(name, boundaries)}")
+        raise fault(path, f"no boundary is called {shown(name)}; {nearest(name, boundaries)}")
     return boundaries[name]

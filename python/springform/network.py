@@ -7,7 +7,7 @@ import math
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,9 +55,10 @@ class Network:
     Attributes: `positions` (n, 3) start positions [m]; `springs` (m, 2) node numbers; `fixed`
     (n,) bool, held along all axes; `fixed_axes` (n, 3) bool, held along x, y, z; `slides`;
     `stiffness` (m,) [N/m], with a curve its secant to the last point; `rest_length` (m,) [m];
-    `force` (m,) [N]; `sense` (m,): 1 tension, 0 both, -1 compression; `area` (m,) of the
-    cross-sections [m2], NaN where unknown; `loads` (n, 3) [N]; `self_weight` (m,) [N/m] of the
-    springs without a rest length, or empty; `pressure`; `rods`.
+    `force` (m,) [N]; `law` (m,), the place in `LAWS` of the law that was said; `sense` (m,): 1
+    tension, 0 both, -1 compression; `area` (m,) of the cross-sections [m2], NaN where unknown;
+    `loads` (n, 3) [N]; `self_weight` (m,) [N/m] of the springs without a rest length, or empty;
+    `pressure`; `rods`.
     """
 
     positions: Floats
@@ -68,6 +69,7 @@ class Network:
     stiffness: Floats
     rest_length: Floats
     force: Floats
+    law: NDArray[np.uint8]
     sense: NDArray[np.int8]
     curve: NDArray[np.uint32]
     curves: list[_core.ForceStrainCurve]
@@ -134,7 +136,7 @@ class Network:
         self.fixed = read_only(np.asarray(self.fixed_axes.all(axis=1)))
         self.slides = [_slide(slide) for slide in slides]
         lengths = spring_lengths(self.positions, self.springs)
-        self.stiffness, self.rest_length, self.force, self.curve, self.curves = resolve(
+        self.stiffness, self.rest_length, self.force, self.curve, self.curves, self.law = resolve(
             lengths,
             stiffness=stiffness,
             axial_stiffness=axial_stiffness,
@@ -155,6 +157,16 @@ class Network:
             )
         self.pressure = [([int(node) for node in cell], float(value)) for cell, value in pressure]
         self.rods = [self._rod(number, rod) for number, rod in enumerate(rods)]
+
+    @classmethod
+    def from_core(cls, arrays: dict[str, Any]) -> Network:
+        """Return the network that the core made, from its arrays by name; they are not copied."""
+        network = cls.__new__(cls)
+        for name, value in arrays.items():
+            setattr(network, name, read_only(value) if isinstance(value, np.ndarray) else value)
+        network.fixed = read_only(np.asarray(network.fixed_axes.all(axis=1)))
+        network.rods = [Rod(*rod) for rod in arrays["rods"]]
+        return network
 
     def __repr__(self) -> str:
         return (

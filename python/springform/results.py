@@ -11,43 +11,65 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from .arrays import Floats
 from .design import Design, Measures
 from .design_file import dump
 from .equalisation import Equalised
 from .exchange.obj import line_obj
 from .files import WriteError, explain, write_atomically
 from .network import Equilibrium
+from .spring_laws import LAWS
+
+_NODE_COLUMNS = (
+    *("node", "key", "x", "y", "z", "anchor"),
+    *("load_x", "load_y", "load_z", "reaction_x", "reaction_y", "reaction_z"),
+)
+_SPRING_COLUMNS = (
+    *("spring", "node_a", "node_b", "stiffness", "rest_length", "length", "force"),
+    *("member", "law", "strain", "stress", "energy"),
+)
 
 
 def write(design: Design, equilibrium: Equilibrium, measures: Measures, folder: Path) -> list[Path]:
     """Write design.toml, nodes.csv, springs.csv, measures.json and net.obj; return their paths.
 
-    Lengths in m, forces in N, stiffness in N/m. Results that are there are replaced. Raises
-    `WriteError`: the folder can't be written, or holds other files of these names.
+    What the columns hold, and their units: docs/formats/results.md. Results that are there are
+    replaced. Raises `WriteError`: the folder can't be written, or holds other files of these names.
     """
     network = design.network()
+    labels = [*["cord"] * design.cords.stop, *rod_labels(design)]
     anchors = dict(zip(design.anchors.tolist(), design.anchor_names, strict=True))
     positions = equilibrium.positions.tolist()
     nodes = (
-        (number, key, *position, anchors.get(number, ""))
-        for number, (key, position) in enumerate(zip(design.nodes, positions, strict=True))
+        (number, key, *position, anchors.get(number, ""), *load, *reaction)
+        for number, (key, position, load, reaction) in enumerate(
+            zip(
+                design.nodes,
+                positions,
+                equilibrium.loads.tolist(),
+                equilibrium.reactions.tolist(),
+                strict=True,
+            )
+        )
     )
-    ends = equilibrium.positions[network.springs]
-    lengths = ((ends[:, 0] - ends[:, 1]) ** 2).sum(axis=1) ** 0.5
     springs = zip(
         range(len(network.springs)),
         *network.springs.T.tolist(),
         network.stiffness.tolist(),
         network.rest_length.tolist(),
-        lengths.tolist(),
+        equilibrium.lengths.tolist(),
         equilibrium.forces.tolist(),
+        labels,
+        [LAWS[number] for number in network.law],
+        _or_empty(equilibrium.strains),
+        _or_empty(equilibrium.stresses),
+        equilibrium.spring_energies.tolist(),
         strict=True,
     )
-    spring_header = ["spring", "node_a", "node_b", "stiffness", "rest_length", "length", "force"]
     contents = {
         "design.toml": dump(design.to_file(), "toml"),
-        "nodes.csv": _csv(["node", "key", "x", "y", "z", "anchor"], nodes),
-        "springs.csv": _csv(spring_header, springs),
+        "nodes.csv": _csv(_NODE_COLUMNS, nodes),
+        "springs.csv": _csv(_SPRING_COLUMNS, springs),
         "measures.json": json.dumps(finite(asdict(measures)), indent=2) + "\n",
         "net.obj": line_obj(equilibrium.positions, network.springs),
     }
@@ -85,6 +107,15 @@ def write_factors(design: Design, tuned: Equalised, path: Path) -> None:
     write_atomically(path, _csv(header, rows).encode())
 
 
+def rod_labels(design: Design) -> list[str]:
+    """Return what each link of the rods belongs to, in the order of the network's springs."""
+    labels: list[str] = []
+    for number, (rod, said) in enumerate(zip(design.network().rods, design.file.rods, strict=True)):
+        links = len(rod.nodes) - (not rod.closed)
+        labels += [said.name or f"rod {number + 1}"] * links
+    return labels
+
+
 def finite(value: Any) -> Any:
     """Return plain data with None for numbers that JSON does not know."""
     if isinstance(value, dict):
@@ -92,6 +123,10 @@ def finite(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [finite(part) for part in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _or_empty(values: Floats) -> list[float | str]:
+    return ["" if math.isnan(value) else value for value in values.tolist()]
 
 
 def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

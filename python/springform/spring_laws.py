@@ -15,6 +15,9 @@ from .errors import InputError
 NO_CURVE = 2**32 - 1
 """In place of the number of a curve: the spring has none."""
 
+LAWS = ("stiffness", "axial_stiffness", "force_density", "force", "curve")
+"""Names of the laws, in the order of their numbers."""
+
 _SENSES = {"tension": 1, "both": 0, "compression": -1}
 
 
@@ -73,6 +76,8 @@ class SpringLaws(NamedTuple):
     curve: NDArray[np.uint32]
     """Number in `curves`, or `NO_CURVE`, (m,); empty if no spring has a curve."""
     curves: list[_core.ForceStrainCurve]
+    law: NDArray[np.uint8]
+    """Place in `LAWS` of the law that was said, (m,)."""
 
 
 def senses(sense: str | Sequence[str], count: int) -> NDArray[np.int8]:
@@ -130,7 +135,8 @@ class _Resolver:
             # The plain case keeps the caller's arrays.
             plain = self._values("stiffness", 1.0 if stiffness is None else stiffness)
             rest = self._values("rest_length", 0.0 if rest_length is None else rest_length)
-            return SpringLaws(plain, rest, self._values("force", 0.0), none, [])
+            said_law = read_only(np.zeros(self._count, dtype=np.uint8))
+            return SpringLaws(plain, rest, self._values("force", 0.0), none, [], said_law)
         if all(value is None for value in (stiffness, axial_stiffness, force, curve)):
             stiffness = 1.0
         hooke = self._values("stiffness", _or_nan(stiffness))
@@ -145,6 +151,9 @@ class _Resolver:
         with np.errstate(all="ignore"):
             rate = np.where(np.isnan(axial), hooke, axial / rest)
         elastic = np.isnan(constant)
+        axially = np.where(np.isnan(axial), 0, LAWS.index("axial_stiffness"))
+        said_law = np.where(elastic, axially, LAWS.index("force"))
+        said_law = np.where(curved, LAWS.index("curve"), said_law)
         strain = self._values("thermal_strain", 0.0 if thermal_strain is None else thermal_strain)
         if (bad := np.flatnonzero(~(strain > -1))).size:
             raise InputError(f"must be above -1, not {strain[bad[0]]:g}", key="thermal_strain")
@@ -156,6 +165,7 @@ class _Resolver:
             read_only(np.where(elastic, 0.0, constant)),
             read_only(number) if curves else none,
             [one.native for one in curves],
+            read_only(said_law.astype(np.uint8)),
         )
 
     def _curves(self, curve: Curves) -> tuple[NDArray[np.uint32], list[Curve]]:

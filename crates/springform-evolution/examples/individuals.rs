@@ -11,6 +11,7 @@ use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
+use springform_mechanics::rigging::Rigging;
 use springform_mechanics::stage::STAGES;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
@@ -132,6 +133,7 @@ fn cylinder(method: Method) -> Setting {
         catalogue: Catalogue::default(),
         method,
         law: SpringLaw::default(),
+        rigging: Rigging::default(),
         solver: Settings::default(),
         anchors,
         mesh,

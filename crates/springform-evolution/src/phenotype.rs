@@ -6,6 +6,7 @@ use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::{Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
 use springform_mechanics::network::Network;
+use springform_mechanics::rigging::{Rigging, RiggingError};
 use springform_mechanics::stage::Stage;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
@@ -30,6 +31,8 @@ pub struct Setting {
     pub embedding: Embedding,
     /// Stiffness of springs.
     pub law: SpringLaw,
+    /// Laws of groups of springs, rods, loads and supports.
+    pub rigging: Rigging,
     /// When equilibrium is reached.
     pub solver: Settings,
 }
@@ -59,6 +62,9 @@ pub enum PhenotypeError {
     /// More cells than [`springform_topology::MAX_CELLS`].
     #[error("the forest has too many cells")]
     TooManyCells,
+    /// The springs, rods or loads of the design don't fit the net.
+    #[error(transparent)]
+    Rigging(#[from] RiggingError),
     /// No equilibrium.
     #[error("the net finds no equilibrium: {0:?}, residual {1:.3e}")]
     Equilibrium(Status, f64),
@@ -79,17 +85,18 @@ impl Setting {
     /// Grows the network of a closed forest.
     ///
     /// # Errors
-    /// The filters leave no net.
-    pub fn grow(&self, forest: &Forest) -> Result<(Expression, Network<'static>), ExpressionError> {
+    /// The filters leave no net, or its springs, rods or loads don't fit.
+    pub fn grow(&self, forest: &Forest) -> Result<(Expression, Network<'static>), PhenotypeError> {
         let expression = express(&self.mesh, forest, &self.catalogue, self.method, &self.anchors)?;
-        let network = assemble(&expression, &self.embedding, self.law);
+        let mut network = assemble(&expression, &self.embedding, self.law);
+        self.rigging.rig(&self.mesh, &expression, &mut network)?;
         Ok((expression, network))
     }
 
     /// Grows, solves and measures a closed forest.
     ///
     /// # Errors
-    /// The filters leave no net, or the net no equilibrium.
+    /// The filters leave no net, or the net is refused or finds no equilibrium.
     pub fn evaluate(&self, forest: &Forest) -> Result<Phenotype, PhenotypeError> {
         self.evaluate_with_lineage(forest).map(|(phenotype, _)| phenotype)
     }
@@ -97,7 +104,7 @@ impl Setting {
     /// The same, and the order of elimination that mutants inherit.
     ///
     /// # Errors
-    /// The filters leave no net, or the net no equilibrium.
+    /// The filters leave no net, or the net is refused or finds no equilibrium.
     pub fn evaluate_with_lineage(&self, forest: &Forest) -> Result<(Phenotype, Lineage), PhenotypeError> {
         let (expression, network) = self.grow(forest)?;
         let mut solver = Solver::default();
@@ -136,7 +143,7 @@ impl Evaluator {
     /// [`Setting::evaluate`] but for rounding; tells `observe` when a stage ends.
     ///
     /// # Errors
-    /// The filters leave no net, or the net no equilibrium.
+    /// The filters leave no net, or the net is refused or finds no equilibrium.
     pub fn evaluate(
         &mut self,
         setting: &Setting,
@@ -144,11 +151,16 @@ impl Evaluator {
         parent: &Lineage,
         observe: &mut impl FnMut(Stage),
     ) -> Result<Evaluation, PhenotypeError> {
-        let Setting { mesh, catalogue, method, anchors, embedding, law, solver } = setting;
+        let Setting { mesh, catalogue, method, anchors, embedding, law, rigging, solver } = setting;
         let grown = || observe(Stage::Nodes);
-        let expression = self.growth.express_observed(mesh, forest, catalogue, *method, anchors, grown)?;
+        self.growth.express_observed(mesh, forest, catalogue, *method, anchors, grown)?;
         observe(Stage::Filter);
+        if rigging.needs_owners() {
+            self.growth.add_owners();
+        }
+        let expression = self.growth.expression();
         assemble_into(expression, embedding, *law, &mut self.network);
+        rigging.rig(mesh, expression, &mut self.network)?;
         observe(Stage::Nodes);
         let order = self.heir.order(&expression.nodes, parent);
         self.solver.solve_ordered_into(&self.network, solver, Some(order), &mut self.equilibrium, observe);

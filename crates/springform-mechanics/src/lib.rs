@@ -11,12 +11,14 @@
 
 pub mod assembly;
 pub mod bounded;
+pub mod border;
 pub mod curve;
 pub mod embedding;
 pub mod equalisation;
 pub mod equilibrium;
 pub mod measures;
 pub mod network;
+pub mod rigging;
 pub mod rod;
 pub mod sparse;
 pub mod stage;

@@ -1,12 +1,12 @@
 //! Measures of a net at equilibrium (the paper §3.5–3.6, Fig. 15).
 
+use crate::border::nodes_along;
 use crate::network::Network;
 use crate::vector::{Vector, cross, length, mean, scale, subtract};
-use springform_topology::base_mesh::{BaseMesh, Border};
+use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::NULL;
 use springform_topology::expression::Expression;
 use springform_topology::framework::Side;
-use springform_topology::node_key::NodeKey;
 
 /// A spring weaker than this share of the strongest makes the force differential undefined.
 pub const VANISHING_FORCE: f64 = 1e-12;
@@ -62,13 +62,15 @@ pub struct Aperture {
 }
 
 impl Measures {
-    /// Measures a net whose springs have these forces at these positions.
+    /// Measures a net whose springs have these forces at these positions; links of rods, which stand behind the
+    /// springs of the net, are none of them.
     pub fn new(
         expression: &Expression,
         network: &Network<'_>,
         positions: &[Vector],
         forces: &[f64],
     ) -> Measures {
+        let forces = &forces[..expression.springs.len()];
         let count = forces.len().max(1) as f64;
         let (mut force_min, mut force_max, mut force_sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         let (mut total_length, mut load_path, mut shortest_spring) = (0.0, 0.0, f64::INFINITY);
@@ -132,9 +134,9 @@ pub fn apertures(mesh: &BaseMesh, expression: &Expression, positions: &[Vector])
     mesh.borders()
         .iter()
         .map(|border| {
-            let outline: Vec<Vector> = border_nodes(mesh, expression, border)
+            let outline: Vec<Vector> = nodes_along(mesh, expression, border)
                 .into_iter()
-                .map(|node| positions[node as usize])
+                .map(|at| positions[at.node as usize])
                 .collect();
             let stretches = if border.closed { outline.len() } else { outline.len().saturating_sub(1) };
             let stretch = |at: usize| (outline[at], outline[(at + 1) % outline.len()]);
@@ -145,23 +147,6 @@ pub fn apertures(mesh: &BaseMesh, expression: &Expression, positions: &[Vector])
             Aperture { part: border.part.clone(), side: border.side, perimeter, area, normal }
         })
         .collect()
-}
-
-/// Nodes of the net along a border, in its order.
-fn border_nodes(mesh: &BaseMesh, expression: &Expression, border: &Border) -> Vec<u32> {
-    let path = &border.path;
-    let mut nodes = Vec::new();
-    for (at, &vertex) in path.iter().enumerate() {
-        nodes.extend(expression.node(NodeKey::vertex(vertex)));
-        if at + 1 == path.len() && !border.closed {
-            break;
-        }
-        let next = path[(at + 1) % path.len()];
-        let Some(edge) = mesh.edge_between(vertex, next) else { continue };
-        let inside = expression.nodes_inside_edge(edge);
-        if vertex < next { nodes.extend(inside) } else { nodes.extend(inside.rev()) }
-    }
-    nodes
 }
 
 fn area(expression: &Expression, positions: &[Vector]) -> f64 {

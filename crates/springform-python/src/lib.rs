@@ -8,6 +8,7 @@ mod evolution;
 mod measures;
 mod network;
 mod sensitivity;
+mod rigging;
 mod setting;
 mod topology;
 

@@ -1,25 +1,27 @@
 //! Designs without their forest, and the nets that grow in them, for Python.
 
-use crate::convert::{GroupArrays, groups, refusal, rows};
+use crate::convert::{GroupArrays, groups, or_nan, refusal, rows};
 use crate::measures::measures_dict;
-use crate::network::{NetworkArrays, values, vectors};
+use crate::network::{ForceStrainCurve, NetworkArrays, values, vectors};
+use crate::rigging::{Sections, pairs};
 use crate::topology::{BaseMesh, Forest};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springform_evolution::phenotype;
+use springform_evolution::phenotype::{self, PhenotypeError};
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::{Measures, apertures, inner_forces};
+use springform_mechanics::network::{Network, Path, Sense};
+use springform_mechanics::rigging::{Law, RiggingError};
 use springform_mechanics::vector::Vector;
 use springform_topology::address::Place;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
 use springform_topology::expression::{Expression, ExpressionError};
 use springform_topology::filters::Method;
-use springform_topology::forest::{self, Content, NodePair, Override};
-use springform_topology::node_key::NodeKey;
+use springform_topology::forest::{self, Content, Override};
 use springform_topology::notation::{parse_content, read_top_cell, write_cell, write_content};
 use springform_topology::sides;
 use std::collections::BTreeMap;
@@ -41,23 +43,6 @@ impl Setting {
     pub fn lines(&self, edits: &[Edit]) -> Vec<String> {
         edits.iter().map(|edit| edit.write(&self.setting.catalogue)).collect()
     }
-
-    fn pairs(&self, key: &str, lines: &[String]) -> PyResult<Vec<NodePair>> {
-        let pair = |line: &String| {
-            let words: Vec<&str> = line.split_whitespace().collect();
-            let [a, b] = words[..] else {
-                return Err("write two nodes, such as 'v1 e7:1/2'".to_owned());
-            };
-            let node = |word| NodeKey::parse(word, &self.setting.mesh).map_err(|error| error.to_string());
-            NodePair::new(node(a)?, node(b)?).ok_or_else(|| "the two nodes are the same".to_owned())
-        };
-        let numbered = lines.iter().enumerate();
-        numbered
-            .map(|(at, line)| {
-                pair(line).map_err(|problem| refusal(format!("overrides.{key}[{at}]"), problem))
-            })
-            .collect()
-    }
 }
 
 #[pymethods]
@@ -74,6 +59,7 @@ impl Setting {
         drawn: Option<Vec<Vector>>,
         stiffness: f64,
         ring_factor: f64,
+        sections: Sections,
         tolerance: f64,
     ) -> PyResult<Self> {
         let mut catalogue = Catalogue::default();
@@ -83,6 +69,7 @@ impl Setting {
         }
         let method = Method::parse(method).ok_or_else(|| refusal("method", "unknown method"))?;
         let mesh = mesh.mesh.clone();
+        let rigging = sections.rigging(&mesh, &catalogue)?;
         let embedding = py.detach(|| match drawn {
             Some(drawn) => Embedding::drawn(&mesh, anchor_positions, drawn),
             None => embed(&mesh, &anchors, anchor_positions),
@@ -94,6 +81,7 @@ impl Setting {
             anchors,
             embedding,
             law: SpringLaw { stiffness, ring_factor },
+            rigging,
             solver: Settings { tolerance, ..Settings::default() },
         };
         Ok(Setting { setting })
@@ -125,7 +113,9 @@ impl Setting {
                 .map_err(|error| refusal("framework.level", error))?;
         }
         for (key, lines, what) in [("added", added, Override::Added), ("cut", cut, Override::Cut)] {
-            for (at, pair) in self.pairs(key, &lines)?.into_iter().enumerate() {
+            for (at, pair) in
+                pairs(&self.setting.mesh, &format!("overrides.{key}"), &lines)?.into_iter().enumerate()
+            {
                 let edit = Edit::Override { pair, what, set: true };
                 edit.apply(&mut grown).map_err(|error| refusal(format!("overrides.{key}[{at}]"), error))?;
             }
@@ -188,15 +178,11 @@ impl Setting {
     fn grow<'py>(slf: Bound<'py, Self>, forest: &Forest) -> PyResult<(Net, Bound<'py, PyDict>)> {
         let (py, setting) = (slf.py(), &slf.get().setting);
         let (expression, network) =
-            py.detach(|| setting.grow(&forest.forest)).map_err(|error| expression_refusal(&error))?;
-        let arrays = PyDict::new(py);
-        arrays.set_item("positions", rows(py, network.positions.into_owned())?)?;
-        arrays.set_item("springs", rows(py, network.springs.into_owned())?)?;
-        let fixed = network.fixed.iter().map(|axes| axes[0]);
-        arrays.set_item("fixed", PyArray1::from_iter(py, fixed))?;
-        arrays.set_item("stiffness", PyArray1::from_vec(py, network.stiffness.into_owned()))?;
-        arrays.set_item("rest_length", PyArray1::from_vec(py, network.rest_length.into_owned()))?;
-        arrays.set_item("loads", rows(py, network.loads.into_owned())?)?;
+            py.detach(|| setting.grow(&forest.forest)).map_err(|error| growth_refusal(&error))?;
+        let arrays = network_dict(py, network)?;
+        let (laws, areas) = spring_kinds(setting, &expression);
+        arrays.set_item("law", PyArray1::from_vec(py, laws))?;
+        arrays.set_item("area", PyArray1::from_vec(py, areas))?;
         Ok((Net { expression, setting: slf.unbind() }, arrays))
     }
 
@@ -291,7 +277,7 @@ impl Net {
         forces: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let forces = values("forces", &forces)?;
-        if forces.len() != self.expression.springs.len() {
+        if forces.len() < self.expression.springs.len() {
             return Err(refusal("forces", "these are results of another net"));
         }
         Ok(PyArray1::from_vec(py, inner_forces(&self.expression, forces)))
@@ -308,7 +294,10 @@ impl Net {
         let network = network.network()?;
         let (positions, forces) = (vectors("positions", &positions)?, values("forces", &forces)?);
         let expression = &self.expression;
-        if positions.len() != expression.nodes.len() || forces.len() != expression.springs.len() {
+        if positions.len() != expression.nodes.len()
+            || forces.len() != network.springs.len()
+            || forces.len() < expression.springs.len()
+        {
             return Err(refusal("positions", "these are results of another net"));
         }
         let mesh = &self.setting.get().setting.mesh;
@@ -326,15 +315,86 @@ impl Net {
     }
 }
 
-/// The key of what an expression error is about, and the error.
-fn expression_refusal(error: &ExpressionError) -> PyErr {
+/// Arrays of a network by name, as [`NetworkArrays`] takes them.
+fn network_dict<'py>(py: Python<'py>, network: Network<'static>) -> PyResult<Bound<'py, PyDict>> {
+    let curves: Vec<ForceStrainCurve> =
+        network.curves.iter().map(|curve| ForceStrainCurve { curve: curve.clone() }).collect();
+    let rods: Vec<_> = network
+        .rods
+        .iter()
+        .map(|rod| (rod.nodes.clone(), rod.bending_stiffness, rod.closed, rod.lengths.clone()))
+        .collect();
+    let pressure: Vec<_> = network
+        .pressure
+        .values
+        .iter()
+        .zip(0..)
+        .map(|(&value, cell)| (network.pressure.cells.of(cell).to_vec(), value))
+        .collect();
+    let slides: Vec<_> = network
+        .slides
+        .iter()
+        .map(|slide| match slide.path {
+            Path::Line(along) => (slide.node, false, along),
+            Path::Plane(normal) => (slide.node, true, normal),
+        })
+        .collect();
+    let senses = network.sense.iter().map(|sense| match sense {
+        Sense::Tension => 1i8,
+        Sense::Both => 0,
+        Sense::Compression => -1,
+    });
+    let arrays = PyDict::new(py);
+    arrays.set_item("sense", PyArray1::from_iter(py, senses))?;
+    arrays.set_item("curves", curves)?;
+    arrays.set_item("rods", rods)?;
+    arrays.set_item("pressure", pressure)?;
+    arrays.set_item("slides", slides)?;
+    arrays.set_item("positions", rows(py, network.positions.into_owned())?)?;
+    arrays.set_item("springs", rows(py, network.springs.into_owned())?)?;
+    arrays.set_item("fixed_axes", rows(py, network.fixed.into_owned())?)?;
+    arrays.set_item("stiffness", PyArray1::from_vec(py, network.stiffness.into_owned()))?;
+    arrays.set_item("rest_length", PyArray1::from_vec(py, network.rest_length.into_owned()))?;
+    arrays.set_item("force", PyArray1::from_vec(py, network.force.into_owned()))?;
+    arrays.set_item("curve", PyArray1::from_vec(py, network.curve.into_owned()))?;
+    arrays.set_item("self_weight", PyArray1::from_vec(py, network.weight.into_owned()))?;
+    arrays.set_item("loads", rows(py, network.loads.into_owned())?)?;
+    Ok(arrays)
+}
+
+/// Law of every spring of the network, by name, and area of its cross-section [m²], NaN where unknown.
+fn spring_kinds(setting: &phenotype::Setting, expression: &Expression) -> (Vec<u8>, Vec<f64>) {
+    let rigging = &setting.rigging;
+    let properties = rigging.properties(&setting.mesh, expression);
+    let law = |law: Option<Law>| match law {
+        None | Some(Law::Stiffness(_)) => 0u8,
+        Some(Law::AxialStiffness(_)) => 1,
+        Some(Law::ForceDensity(_)) => 2,
+        Some(Law::Force(_)) => 3,
+        Some(Law::Curve(_)) => 4,
+    };
+    let mut laws: Vec<u8> = properties.iter().map(|one| law(one.law)).collect();
+    let mut areas: Vec<f64> = properties.iter().map(|one| or_nan(one.area)).collect();
+    for rod in &rigging.rods {
+        let links = rod.links(&setting.mesh, expression);
+        laws.extend(std::iter::repeat_n(1, links));
+        areas.extend(std::iter::repeat_n(or_nan(rod.area), links));
+    }
+    (laws, areas)
+}
+
+/// The key of what kept a net from growing, and what to do.
+fn growth_refusal(error: &PhenotypeError) -> PyErr {
     match error {
-        ExpressionError::LooseAnchor(anchor) => {
+        PhenotypeError::Rigging(RiggingError { key, problem }) => refusal(key, problem),
+        PhenotypeError::Expression(ExpressionError::LooseAnchor(anchor)) => {
             let problem = "the anchor is left without springs after filtering; keep a path to another one";
             refusal(format!("framework.anchors[{anchor}]"), problem)
         }
-        ExpressionError::Type { place, .. } => refusal(format!("forest.cells.{}", place.face), error),
-        ExpressionError::Empty => refusal("forest", error),
+        PhenotypeError::Expression(error @ ExpressionError::Type { place, .. }) => {
+            refusal(format!("forest.cells.{}", place.face), error)
+        }
+        error => refusal("forest", error),
     }
 }
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, get_args
+from typing import Annotated, Any, get_args
 
+import numpy as np
 import typer
 
 from .. import results, scenes
@@ -15,7 +17,8 @@ from ..errors import InputError, SpringformError
 from ..evolution import seek
 from ..exchange.obj import design_from_obj
 from ..files import WriteError
-from ..network import TOLERANCE, Solver
+from ..network import TOLERANCE, Equilibrium, Solver
+from ..readings import read_spring, slack_count
 from ..run import Run, open_run
 from ..run_format import is_run
 from .terminal import (
@@ -82,6 +85,9 @@ def solve_command(
     tolerance: Annotated[
         float, typer.Option(help="Largest residual over the mean spring force.")
     ] = TOLERANCE,
+    spring: Annotated[
+        int | None, typer.Option(help="Number of a spring to read: force, strain, lengths, law.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Grow the net of a design and find its equilibrium."""
@@ -103,16 +109,23 @@ def solve_command(
         "force_min": measures.force_min,
         "force_max": measures.force_max,
         "force_mean": measures.force_mean,
+        "slack": slack_count(equilibrium, net.cords),
+        "rods": len(net.network().rods),
+        "load_sum": equilibrium.loads.sum(axis=0).tolist(),
+        **_reactions(net, equilibrium),
         "residual": equilibrium.residual,
+        "method": equilibrium.method,
         "converged": equilibrium.converged,
         "iterations": equilibrium.iterations,
         "seconds": time.perf_counter() - began,
     }
     if out is not None:
         results.write(net, equilibrium, measures, out)
+    if spring is not None:
+        report = {**report, **_spring(net, equilibrium, spring, as_json)}
     print_report(report, as_json)
     if not equilibrium.converged:
-        say(f"springform: no equilibrium: {equilibrium.reason}")
+        say(f"springform: no equilibrium: {equilibrium.reason}{_worst(net, equilibrium)}")
         raise typer.Exit(NOT_CONVERGED)
 
 
@@ -183,6 +196,37 @@ def plot_command(
     else:
         paths = plots.plot_design(subject, out)
     print_report({"pictures": [str(path) for path in paths]}, as_json)
+
+
+def _reactions(net: Design, equilibrium: Equilibrium) -> dict[str, Any]:
+    """Return the largest reaction with its anchor, and the sum of all."""
+    at_anchors = equilibrium.reactions[net.anchors]
+    sizes = np.linalg.norm(at_anchors, axis=1)
+    largest = int(np.argmax(sizes))
+    return {
+        "reaction_max": float(sizes[largest]),
+        "reaction_max_at": net.anchor_names[largest],
+        "reaction_sum": equilibrium.reactions.sum(axis=0).tolist(),
+    }
+
+
+def _worst(net: Design, equilibrium: Equilibrium) -> str:
+    """Return where the node of the largest residual is, if there is one."""
+    worst = equilibrium.worst_node
+    if worst is None:
+        return ""
+    x, y, z = (f"{value:.4g}" for value in equilibrium.positions[worst])
+    return f"; node {worst} is {net.nodes[worst]} at ({x}, {y}, {z})"
+
+
+def _spring(net: Design, equilibrium: Equilibrium, spring: int, as_json: bool) -> dict[str, Any]:
+    """Return what a spring does, to be printed."""
+    found = read_spring(net.network(), equilibrium, spring)
+    a, b = (net.nodes[node] for node in net.network().springs[spring])
+    if as_json:
+        return {"spring": {"nodes": [a, b], "readings": [asdict(one) for one in found]}}
+    lines = {f"  {one.name}": f"{one.text:<16} {one.formula}" for one in found}
+    return {f"spring {spring}": f"{a} to {b}", **lines}
 
 
 def _numbers(text: str | None) -> list[int] | None:

@@ -128,17 +128,19 @@ def print_report(report: dict[str, Any], as_json: bool) -> None:
 
 
 def _words(value: Any) -> str:
+    words = str(value)
     match value:
         case None:
-            return "undefined"
+            words = "undefined"
         case bool():
-            return "yes" if value else "no"
+            words = "yes" if value else "no"
         case float():
-            return "undefined" if math.isnan(value) else f"{value:.6g}"
+            words = "undefined" if math.isnan(value) else f"{value:.6g}"
         case dict():
-            return ", ".join(
-                f"{_words(part)} {name.replace('_', ' ')}" for name, part in value.items()
-            )
+            parts = (f"{_words(part)} {name.replace('_', ' ')}" for name, part in value.items())
+            words = ", ".join(parts)
+        case list() if value and all(isinstance(part, float) for part in value):
+            words = ", ".join(map(_words, value))
         case list():
-            return "\n".join(str(part) for part in value)
-    return str(value)
+            words = "\n".join(str(part) for part in value)
+    return words

@@ -8,6 +8,7 @@ use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::network::Network;
+use springform_mechanics::rigging::Rigging;
 use springform_topology::address::Place;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, CellTypeId, DYNAMIC, QUAD};
@@ -41,6 +42,7 @@ impl Net {
             catalogue: Catalogue::default(),
             method,
             law: SpringLaw::default(),
+            rigging: Rigging::default(),
             solver: Settings::default(),
             anchors,
             mesh,

@@ -19,6 +19,7 @@ use springform_evolution::selection::{WEIGHTINGS, WeightingParameters};
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::Measures;
+use springform_mechanics::rigging::Rigging;
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, CellTypeId};
 use springform_topology::filters::Method;
@@ -49,8 +50,8 @@ pub fn starts(edits: usize) -> impl Values<Value = Start> {
 
 fn start(Net { design, embedding, .. }: Net) -> Start {
     let Design { mesh, catalogue, method, anchors, forest } = design;
-    let (law, solver) = (SpringLaw::default(), Settings::default());
-    Start { setting: Setting { mesh, catalogue, method, anchors, embedding, law, solver }, forest }
+    let (law, rigging, solver) = (SpringLaw::default(), Rigging::default(), Settings::default());
+    Start { setting: Setting { mesh, catalogue, method, anchors, embedding, law, rigging, solver }, forest }
 }
 
 /// Types that mutation draws under a method.
@@ -137,6 +138,7 @@ pub fn cylinder() -> Start {
         catalogue: Catalogue::default(),
         method: Method::Dynamic,
         law: SpringLaw::default(),
+        rigging: Rigging::default(),
         solver: Settings::default(),
         anchors,
         mesh,
