@@ -16,6 +16,7 @@ LAST_LINES = {
     "04_evolve.py": "rebuilt: ",
     "05_animate.py": "converged: True",
     "06_real_cords.py": "held: 500.0 N of 500.0 N",
+    "07_graft.py": "fresh base with patches of two runs: ",
 }
 
 

@@ -9,43 +9,79 @@ sf.save(run.best, "evolved.toml")
 """
 
 from ._core import __version__
+from .comparison import Comparison, Moved, compare
 from .design import Aperture, Cells, Design, Measures, load, save
+from .distil import Distilled, distil, save_library
 from .errors import DesignError, InputError, RunError, SpringformError
 from .evolution import Progress, SeekStep, evolve, resume, seek
 from .files import WriteError
+from .grafting import (
+    Grafted,
+    Lifted,
+    Skipped,
+    anchor_peaks,
+    best_anchor,
+    edit_orbit,
+    graft,
+    lift,
+    symmetries,
+)
 from .network import Equilibrium, Network, Rod, animate, residuals, solve
 from .parameters import Parameters
+from .patch_file import Patch, PatchError, load_patch, save_patch
 from .run import Run, open_run
 from .scenes import names as scene_names
+from .selections import SelectionError, select
 from .spring_laws import Curve
 
 __all__ = [
     "Aperture",
     "Cells",
+    "Comparison",
     "Curve",
     "Design",
     "DesignError",
+    "Distilled",
     "Equilibrium",
+    "Grafted",
     "InputError",
+    "Lifted",
     "Measures",
+    "Moved",
     "Network",
     "Parameters",
+    "Patch",
+    "PatchError",
     "Progress",
     "Rod",
     "Run",
     "RunError",
     "SeekStep",
+    "SelectionError",
+    "Skipped",
     "SpringformError",
     "WriteError",
     "__version__",
+    "anchor_peaks",
     "animate",
+    "best_anchor",
+    "compare",
+    "distil",
+    "edit_orbit",
     "evolve",
+    "graft",
+    "lift",
     "load",
+    "load_patch",
     "open_run",
     "residuals",
     "resume",
     "save",
+    "save_library",
+    "save_patch",
     "scene_names",
     "seek",
+    "select",
     "solve",
+    "symmetries",
 ]

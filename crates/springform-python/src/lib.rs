@@ -3,8 +3,10 @@
 //! Arrays are handed to NumPy without a copy, and read from NumPy without a copy. The interpreter lock is free
 //! during native work. Every refusal raises `CoreError(key, problem)`.
 
+mod census;
 mod convert;
 mod evolution;
+mod grafting;
 mod measures;
 mod network;
 mod setting;
@@ -22,8 +24,16 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<setting::Net>()?;
     module.add_class::<network::ForceStrainCurve>()?;
     module.add_class::<network::ImplicitEuler>()?;
+    module.add_class::<grafting::Selection>()?;
+    module.add_class::<grafting::Symmetries>()?;
     module.add_class::<evolution::Evolution>()?;
+    module.add_class::<census::Census>()?;
     module.add_class::<evolution::StressSeeking>()?;
+    module.add_function(wrap_pyfunction!(grafting::lift, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::graft_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::check_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::best_frame, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::turned_patch, module)?)?;
     module.add_function(wrap_pyfunction!(network::solve, module)?)?;
     module.add_function(wrap_pyfunction!(network::residuals, module)?)?;
     Ok(())

@@ -10,7 +10,7 @@ import typer
 from .. import _core
 from ..errors import SpringformError, printable
 from ..files import explain
-from . import bench_commands, design_commands, run_commands
+from . import bench_commands, design_commands, graft_commands, run_commands
 from .terminal import BAD_INPUT, INTERRUPTED, StoppedError, say
 
 __all__ = ["main"]
@@ -69,4 +69,5 @@ def _options(
 
 app.add_typer(design_commands.commands)
 app.add_typer(run_commands.commands)
+app.add_typer(graft_commands.commands)
 app.add_typer(bench_commands.commands)
