@@ -17,6 +17,7 @@ LAST_LINES = {
     "05_animate.py": "converged: True",
     "08_even_forces.py": "of 1, 2 or 4 strands: 5.38, then ",
     "06_real_cords.py": "held: 500.0 N of 500.0 N",
+    "07_graft.py": "fresh base with patches of two runs: ",
 }
 
 

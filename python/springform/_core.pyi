@@ -248,6 +248,7 @@ class Setting:
         cls,
         mesh: BaseMesh,
         cell_types: list[tuple[str, list[str], bool, bool]],
+        genes: list[tuple[str, _Patch]],
         method: str,
         anchors: list[int],
         anchor_positions: list[_Vector],
@@ -263,6 +264,10 @@ class Setting:
         `stiffness` is in N/m.
         """
 
+    @property
+    def anchors(self) -> list[int]:
+        """Base vertex of every anchor."""
+
     def forest(
         self, kind: str, level: int, cells: dict[int, str], added: list[str], cut: list[str]
     ) -> Forest:
@@ -273,6 +278,18 @@ class Setting:
 
     def edited(self, forest: Forest, edits: list[str]) -> Forest:
         """Return a forest changed by edits."""
+
+    def followed(self, forest: Forest, edits: list[str]) -> tuple[Forest, list[str]]:
+        """Return the same, and all edits: with those to the other instances of genes."""
+
+    def tree(self, forest: Forest, face: int) -> str:
+        """Return the notation of a top-level cell as it stands, even if a gene holds it."""
+
+    def genes(self, forest: Forest) -> list[tuple[str, _Patch]]:
+        """Return the genes with their cells as a forest holds them."""
+
+    def instances(self, forest: Forest) -> list[tuple[str, _Frame, list[int]]]:
+        """Return (gene, frame, top-level cells) of all that a forest holds by reference."""
 
     def cell(self, forest: Forest, address: str) -> tuple[str, bool, bool]:
         """Return (type and turn, switched on, owns children) of the cell at an address."""
@@ -436,6 +453,127 @@ def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: st
 def residuals(network: _NetworkArrays) -> _Floats:
     """Return the force out of balance at every free node, (n, 3) [N]."""
 
+# --- grafting ----------------------------------------------------------------------------------
+
+_Patch = tuple[bool, list[tuple[str, list[int], list[tuple[str, str]]]]]
+"""Whether corner 0 is an anchor, and (walk, free sides, (path of children, cell notation))."""
+_Frame = tuple[int, int, bool]
+"""(top-level cell, turn, mirrored)."""
+
+@final
+class Selection:
+    """A region of cells: a value, equal to others that cover the same."""
+
+    def __new__(cls, mesh: BaseMesh, addresses: list[str]) -> Selection:
+        """Select the cells at addresses, whether or not a forest divides so far."""
+
+    @staticmethod
+    def all(mesh: BaseMesh) -> Selection:
+        """Select all cells."""
+
+    @staticmethod
+    def lattice(
+        mesh: BaseMesh, part: int, columns: tuple[int, int], rows: tuple[int, int]
+    ) -> Selection:
+        """Select top-level cells in ranges, ends included; columns run on round a cylinder."""
+
+    @staticmethod
+    def on_map(mesh: BaseMesh, forest: Forest, part: int, bounds: list[int]) -> Selection:
+        """Select expressed cells by their centre on the unrolled map.
+
+        `bounds` are left, right, bottom and top in units of 2^-24 columns and rows.
+        """
+
+    @staticmethod
+    def rings(mesh: BaseMesh, nodes: list[str], count: int, level: int) -> Selection:
+        """Select cells of a level in rings round nodes."""
+
+    def grown(self, mesh: BaseMesh, times: int, level: int) -> Selection:
+        """Return the selection with the cells of a level that touch it, so many times over."""
+
+    def shrunk(self, mesh: BaseMesh, times: int, level: int) -> Selection:
+        """Return the selection without the cells of a level that touch others."""
+
+    def union(self, other: Selection) -> Selection:
+        """Return what lies in either."""
+
+    def difference(self, other: Selection) -> Selection:
+        """Return what lies in this but not in the other."""
+
+    def intersection(self, other: Selection) -> Selection:
+        """Return what lies in both."""
+
+    def __eq__(self, other: object, /) -> bool: ...
+    def __bool__(self, /) -> bool: ...
+    @property
+    def addresses(self) -> list[str]:
+        """Addresses of the fewest squares that cover it."""
+
+    @property
+    def faces(self) -> list[int]:
+        """Top-level cells of which some part is selected."""
+
+    def expressed(self, forest: Forest) -> list[str]:
+        """Return the expressed cells of a forest that lie in it."""
+
+def lift(
+    setting: Setting,
+    forest: Forest,
+    selection: Selection,
+    *,
+    vertex: int | None = None,
+    anchored: bool = False,
+    frame: _Frame | None = None,
+) -> tuple[_Patch, _Frame, list[tuple[str, str]]]:
+    """Return a patch, its frame, and (address, why) of what it does not hold."""
+
+def graft_patch(
+    setting: Setting,
+    forest: Forest,
+    patch: _Patch,
+    frames: list[_Frame],
+    *,
+    within: Selection | None = None,
+) -> tuple[Forest, list[str], list[tuple[list[int], list[tuple[str, int | None, str]]]]]:
+    """Return the closed forest, the edits, and for every frame the cells written and skipped.
+
+    What is skipped is (walk, top-level cell, why).
+    """
+
+def check_patch(setting: Setting, patch: _Patch) -> None:
+    """Refuse a patch that can't be read, or has types that the method does not allow."""
+
+def best_frame(setting: Setting, patch: _Patch, vertex: int) -> _Frame | None:
+    """Return the frame at a base vertex in which a patch fits best."""
+
+def turned_patch(setting: Setting, patch: _Patch, turn: int, mirrored: bool) -> _Patch:
+    """Return a patch as it is seen after quarter turns, mirrored or not."""
+
+@final
+class Symmetries:
+    """Rotations and mirrors of a framework that carry anchors to anchors."""
+
+    def __new__(cls, setting: Setting) -> Symmetries: ...
+    def __len__(self, /) -> int: ...
+    @property
+    def mirrored(self) -> list[bool]:
+        """Which of them mirror cells."""
+
+    def images(self, frame: _Frame) -> list[_Frame]:
+        """Return where every one of them carries a frame."""
+
+    def node_images(self, mesh: BaseMesh, node: str) -> list[str]:
+        """Return where every one of them carries a node."""
+
+    def carried(self, setting: Setting, forest: Forest, number: int) -> Forest:
+        """Return a forest as one of them carries it, without added and cut springs."""
+
+    def edits(self, setting: Setting, edits: list[str]) -> list[str]:
+        """Return edits and their images, each once."""
+
+    def check(self, setting: Setting, forest: Forest) -> None:
+        """Refuse a forest that is not symmetric."""
+
 # --- evolution ---------------------------------------------------------------------------------
 
 class _Generation(TypedDict):
@@ -474,6 +612,10 @@ class Evolution:
         max_springs: int | None,
         selection: str,
         threads: int,
+        genes: list[_Patch] = ...,
+        grafts: tuple[bool, float] = ...,
+        symmetries: Symmetries | None = None,
+        within: Selection | None = None,
         resumed: tuple[int, _Standing, float | None] | None = None,
     ) -> Evolution:
         """Start at a forest, or go on after a generation.
@@ -519,6 +661,19 @@ class Evolution:
     @property
     def start(self) -> _Standing:
         """Standing of the design that the run began with."""
+
+@final
+class Census:
+    """Patches that recur in a run, and how their carriers fared."""
+
+    def __new__(cls, setting: Setting, sites: list[tuple[int, bool, Selection]]) -> Census:
+        """Look at sites: (base vertex, whether it is an anchor, cells)."""
+
+    def count(self, evolution: Evolution, scores: list[float | None]) -> None:
+        """Count the individuals of the next generation by their scores; None: left out."""
+
+    def ranked(self, least: int) -> list[tuple[_Patch, int, float, tuple[int, int]]]:
+        """Return (patch, carriers, sum of scores, the best carrier) of patches, best first."""
 
 @final
 class StressSeeking:

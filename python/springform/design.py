@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, get_args
@@ -14,11 +14,19 @@ from numpy.typing import NDArray
 
 from . import _core, design_file, scenes
 from .arrays import Floats
-from .design_schema import Anchor, Arc, DesignFile, ForestSection, Overrides
+from .design_schema import (
+    Anchor,
+    Arc,
+    CellTypeDefinition,
+    DesignFile,
+    ForestSection,
+    Overrides,
+)
 from .errors import DesignError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
 from .network import TOLERANCE, Equilibrium, Network, Solver, solve
+from .patch_schema import Gene, cells_of, core_patch
 from .rigging_schema import NodeLoad, Pressure, Rod, SpringGroup
 
 Groups = tuple[NDArray[np.uint32], NDArray[np.uint32]]
@@ -154,6 +162,11 @@ class Design:
         """Names of the anchors."""
         return self.file.framework.anchor_names()
 
+    @property
+    def anchor_vertices(self) -> list[int]:
+        """Base vertex of every anchor, in the order of `anchor_names`."""
+        return self.setting.anchors
+
     # --- growing -------------------------------------------------------------------------------
 
     @cached_property
@@ -168,8 +181,12 @@ class Design:
     @cached_property
     def closed(self) -> Design:
         """The design with all subdivisions that its method needs written into the forest."""
+        return self.closed_by()[0]
+
+    def closed_by(self) -> tuple[Design, list[str]]:
+        """Return the closed design and the edits that closing took."""
         forest, edits = self._build(lambda: self.setting.closed(self.forest))
-        return self._with(forest) if edits else self
+        return (self.with_forest(forest) if edits else self), edits
 
     def network(self) -> Network:
         """Grow the net: springs after all filters. Raises `DesignError`: nothing is left."""
@@ -252,7 +269,15 @@ class Design:
 
         Raises `DesignError`: an edit does not fit.
         """
-        return self._with(self._build(lambda: self.setting.edited(self.forest, list(edits))))
+        return self.with_forest(self._build(lambda: self.setting.edited(self.forest, list(edits))))
+
+    def followed(self, edits: Iterable[str]) -> tuple[Design, list[str]]:
+        """Return the design changed by edits, and all that was done, as one list for undoing.
+
+        What is done to one instance of a gene is done to the others. Raises as `edited`.
+        """
+        forest, done = self._build(lambda: self.setting.followed(self.forest, list(edits)))
+        return self.with_forest(forest), done
 
     def inverse(self, edits: Iterable[str]) -> list[str]:
         """Return the edits that undo `edits`. Raises `DesignError`: not edits of this framework."""
@@ -306,6 +331,37 @@ class Design:
         table.setdefault(path[-1], []).append(section)
         return Design(design_file.from_data(data, self._source), source=self._source)
 
+    def with_cell_types(self, types: Mapping[str, CellTypeDefinition]) -> Design:
+        """Return the design with further cell types.
+
+        Raises `DesignError`: one is there and has other springs.
+        """
+        known = self.file.cell_types
+        for name, kind in types.items():
+            if known.get(name, kind) != kind:
+                problem = "has other springs in the patch; rename one of the two types"
+                raise DesignError(problem, file=self._source, key=f"cell_types.{name}")
+        if all(name in known for name in types):
+            return self
+        file = self.to_file().model_copy(
+            update={"cell_types": dict(sorted({**known, **types}.items()))}
+        )
+        return Design(file, source=self._source)
+
+    def with_gene(self, name: str, gene: Gene) -> Design:
+        """Return the design with a gene that its forest can refer to.
+
+        Raises `DesignError`: it has another gene of this name.
+        """
+        file = self.to_file()
+        if file.genes.get(name, gene) != gene:
+            problem = "is another gene; choose another name"
+            raise DesignError(problem, file=self._source, key=f"genes.{name}")
+        if name in file.genes:
+            return self
+        genes = dict(sorted({**file.genes, name: gene}.items()))
+        return Design(file.model_copy(update={"genes": genes}), source=self._source)
+
     def renamed(self, name: str) -> Design:
         """Return the design under another name. Raises `DesignError`: not one line of text."""
         if not name.strip() or not name.isprintable():
@@ -324,9 +380,15 @@ class Design:
         cells, added, cut = self.setting.notation(self.forest, default)
         forest = ForestSection(type=section.type, cells=cells)
         overrides = Overrides(added=tuple(added), cut=tuple(cut))
-        return self.file.model_copy(update={"forest": forest, "overrides": overrides})
+        genes = {
+            name: Gene(anchored=core[0], cells=cells_of(core))
+            for name, core in self.setting.genes(self.forest)
+        }
+        changes = {"forest": forest, "overrides": overrides, "genes": genes}
+        return self.file.model_copy(update=changes)
 
-    def _with(self, forest: _core.Forest) -> Design:
+    def with_forest(self, forest: _core.Forest) -> Design:
+        """Return the design with another forest on the same framework."""
         other = Design(self.file, source=self._source, setting=self.setting, forest=forest)
         other._mesh = self._mesh
         return other
@@ -360,6 +422,7 @@ class Design:
                 (name, list(kind.springs), kind.perimeter, kind.fan)
                 for name, kind in file.cell_types.items()
             ],
+            [(name, core_patch(gene.anchored, gene.cells)) for name, gene in file.genes.items()],
             file.method,
             vertices,
             [anchor.position for anchor in file.framework.anchors],

@@ -32,8 +32,14 @@ def parse(text: str, format: Format, source: str | None = None) -> DesignFile:
     `source` is what errors call the text, such as its file name. Raises `DesignError`: the text
     is broken (with its line and column), or is not a valid design (with key and line).
     """
-    data = _parse_toml(text, source) if format == "toml" else _parse_json(text, source)
-    return from_data(data, source, lambda path: line_of_key(text, path, format))
+    return from_data(
+        read_data(text, format, source), source, lambda path: line_of_key(text, path, format)
+    )
+
+
+def read_data(text: str, format: Format, source: str | None = None) -> object:
+    """Return the tables and lists in a TOML or JSON text. Raises `DesignError`: it is broken."""
+    return _parse_toml(text, source) if format == "toml" else _parse_json(text, source)
 
 
 def load(path: str | os.PathLike[str]) -> DesignFile:
@@ -41,7 +47,7 @@ def load(path: str | os.PathLike[str]) -> DesignFile:
 
     Raises `DesignError`: see `parse`; also where the file cannot be read.
     """
-    format = _format_of(path)
+    format = format_of(path)
     return parse(read_text(path, DesignError), format, os.fspath(path))
 
 
@@ -128,21 +134,22 @@ def _broken(format: str, what: str, source: str | None, line: int | None = None)
     return DesignError(f"broken {format}, {what}; correct it", file=source, line=line)
 
 
-def _format_of(path: str | os.PathLike[str]) -> Format:
+def format_of(path: str | os.PathLike[str]) -> Format:
+    """Return the format of a file by its ending. Raises `DesignError`: another ending."""
     suffix = os.path.splitext(os.fspath(path))[1].lower()
     if suffix == ".toml":
         return "toml"
     if suffix == ".json":
         return "json"
-    raise DesignError("a design file ends in .toml or .json; rename it", file=path)
+    raise DesignError("the file must end in .toml or .json; rename it", file=path)
 
 
 def to_data(design_file: DesignFile) -> dict[str, Any]:
     """Return a design as dictionaries, lists, numbers and texts, which `from_data` takes."""
-    return _without_defaults(design_file)
+    return without_defaults(design_file)
 
 
-_ALWAYS_WRITTEN = {"springform", "name", "method", "grid"}
+_ALWAYS_WRITTEN = {"springform", "springform_patch", "name", "method", "grid", "walk"}
 
 
 def dump(design_file: DesignFile, format: Format) -> str:
@@ -156,10 +163,11 @@ def save(design_file: DesignFile, path: str | os.PathLike[str]) -> None:
 
     Raises `DesignError`: another suffix. `WriteError`: the file cannot be written.
     """
-    write_atomically(path, dump(design_file, _format_of(path)).encode())
+    write_atomically(path, dump(design_file, format_of(path)).encode())
 
 
-def _without_defaults(section: BaseModel) -> dict[str, Any]:
+def without_defaults(section: BaseModel) -> dict[str, Any]:
+    """Return a section as plain data, without what is as it is by default."""
     table = {}
     for key, field in type(section).model_fields.items():
         value = getattr(section, key)
@@ -170,7 +178,7 @@ def _without_defaults(section: BaseModel) -> dict[str, Any]:
 
 def _plain(value: object) -> Any:
     if isinstance(value, BaseModel):
-        return _without_defaults(value)
+        return without_defaults(value)
     if isinstance(value, dict):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, tuple):

@@ -10,6 +10,7 @@ from pydantic_core import ErrorDetails
 
 from .design_schema import DesignFile
 from .key_lines import KeyPath
+from .patch_schema import FREE_PATTERN, PATH_PATTERN, WALK_PATTERN
 from .schema_base import NAME_PATTERN, SPRING_PATTERN
 from .wording import nearest, shown
 
@@ -37,6 +38,9 @@ _TYPE_MESSAGES = {
 }
 _PATTERN_MESSAGES = {
     NAME_PATTERN: "must be a lower-case letter, then lower-case letters, digits and _",
+    WALK_PATTERN: "must be a walk of f, l and r, with b only as its first step",
+    FREE_PATTERN: "must be free sides of b, r, f, l, in this order",
+    PATH_PATTERN: "must be a path of children 0-3 with dots, like 0.3",
     SPRING_PATTERN: 'must name two points of a cell, like "c0-x" (c0 to c3, m0 to m3, x)',
 }
 URGENCY = {"extra_forbidden": 0, "missing": 2}
@@ -51,14 +55,14 @@ def path_of(error: ErrorDetails) -> KeyPath:
     return path + tuple(error.get("ctx", {}).get("path", ()))
 
 
-def message_of(error: ErrorDetails) -> str:
-    """Return what is wrong and what to do."""
+def message_of(error: ErrorDetails, schema: type[BaseModel] = DesignFile) -> str:
+    """Return what is wrong and what to do, in a file of a schema."""
     context = error.get("ctx", {})
     kind, value = error["type"], error["input"]
     if kind == "design":
         return str(context["message"])
     if kind == "extra_forbidden":
-        known = _model_at(error["loc"][:-1]).model_fields
+        known = _model_at(schema, error["loc"][:-1]).model_fields
         return f"unknown key; {nearest(str(error['loc'][-1]), known)}"
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
         return "is too large a number; write a smaller one"
@@ -69,9 +73,8 @@ def message_of(error: ErrorDetails) -> str:
     return _MESSAGES.get(kind, error["msg"])
 
 
-def _model_at(path: Iterable[str | int]) -> type[BaseModel]:
+def _model_at(model: type[BaseModel], path: Iterable[str | int]) -> type[BaseModel]:
     """Return the section that the table at `path` belongs to."""
-    model: type[BaseModel] = DesignFile
     for part in path:
         if isinstance(part, str) and part in model.model_fields:
             model = _section_in(model.model_fields[part].annotation) or model

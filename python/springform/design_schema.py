@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from .key_lines import KeyPath
+from .patch_schema import Gene
 from .rigging_schema import Loads, Rod, Springs, check_direction
 from .schema_base import (
     SPRING_PATTERN,
@@ -461,6 +462,8 @@ class DesignFile(Section):
     """The cells; without it all are of type 1 and uniform."""
     cell_types: dict[Name, CellTypeDefinition] = Field(default={})
     """Cell types of your own, by name."""
+    genes: dict[Name, Gene] = Field(default={})
+    """Patches that the forest holds by reference, by name."""
     springs: Springs = Springs()
     """What the springs are made of."""
     rods: Annotated[tuple[Rod, ...], Field(strict=False)] = ()

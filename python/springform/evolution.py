@@ -17,9 +17,12 @@ from typing import Any
 from . import _core
 from .design import Design, save
 from .errors import InputError
+from .grafting import check_fits
 from .parameters import Parameters, checked_parameters
+from .patch_file import Patch, load_patch
 from .run import Run, Table, open_run, start_evolution
 from .run_writer import RunWriter, create, reopen
+from .selections import select
 
 _FIRST_CHECKPOINT = 1.0
 """Seconds between checkpoints at first."""
@@ -57,12 +60,15 @@ def evolve(
 ) -> Run:
     """Evolve a design and return the run; parameters are those of `Parameters`, by name.
 
+    `genes` may be patches or their files, `within` a selection as text. Types that genes define and
+    the design lacks are added to it.
     `out` is the run folder; without it the run lives in a temporary folder as long as the result.
     `threads` is the number of threads, by default one a core; it does not change the result.
     A keyboard interrupt leaves a folder that `resume` picks up.
     Raises `InputError`: a parameter that is not allowed, a design that gives no net, or a folder
     that already holds a run or can't be written.
     """
+    design, parameters = _prepared(design, parameters)
     checked = checked_parameters(parameters, design.file.method)
     evolution = start_evolution(design, checked, threads=_threads(threads))
     keeper = tempfile.TemporaryDirectory(prefix="springform-") if out is None else None
@@ -153,6 +159,23 @@ def seek(
         )
         if seeking.reached(step, None, until_differential, until_suf):
             return
+
+
+def _prepared(design: Design, parameters: dict[str, Any]) -> tuple[Design, dict[str, Any]]:
+    """Read genes and selections, and give the design the types of the genes."""
+    parameters = dict(parameters)
+    if parameters.get("genes"):
+        genes = parameters["genes"]
+        listed = [genes] if isinstance(genes, (str, os.PathLike, Patch)) else list(genes)
+        parameters["genes"] = [
+            gene if isinstance(gene, Patch) else load_patch(gene) for gene in listed
+        ]
+        for gene in parameters["genes"]:
+            check_fits(design, gene)
+            design = design.with_cell_types(gene.cell_types)
+    if isinstance(parameters.get("within"), (str, _core.Selection)):
+        parameters["within"] = select(design, parameters["within"]).addresses
+    return design, parameters
 
 
 def _refused(make: Callable[[], Any], key: str | None = None) -> Any:

@@ -17,6 +17,7 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .patch_file import Patch
 from .wording import nearest
 
 Weighting = Literal["unweighted", "linear", "exponential", "deep", "stress"]
@@ -94,6 +95,14 @@ class Parameters(BaseModel):
     """Most springs allowed; individuals with more do not win."""
     selection: Literal["comma", "plus"] = "comma"
     """Whether the parent contends: plus, or not: comma."""
+    genes: Annotated[tuple[Patch, ...], Field(strict=False)] = ()
+    """Patches that step 4 inserts."""
+    grafts: Amount = "1"
+    """Step 4: most patches that are inserted, a number or a percentage of the top-level cells."""
+    symmetry: bool = False
+    """Mutate by orbits, so that every individual keeps the symmetries of the framework."""
+    within: Annotated[tuple[str, ...], Field(min_length=1, strict=False)] | None = None
+    """Addresses of the cells within which mutation stays."""
     until_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
     """End once the parent has this many springs."""
     until_differential: Annotated[float, Field(gt=0)] | None = None

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from . import _core
 from .design import Design
 from .errors import DesignError, InputError, RunError
-from .parameters import Parameters, checked_parameters
+from .parameters import Parameters, checked_parameters, parse_amount
 from .run_format import (
     ChangeLine,
     GenerationLine,
@@ -245,6 +245,7 @@ def start_evolution(
     """Return the algorithm at a design. Raises `DesignError`: it gives no net."""
     # A design that gives no net says why, with file and key.
     design.network()
+    within = parameters.within
     try:
         types = [design.setting.cell_type(kind) for kind in parameters.types]
         return _core.Evolution(
@@ -265,6 +266,10 @@ def start_evolution(
             max_springs=parameters.max_springs,
             selection=parameters.selection,
             threads=threads,
+            genes=[gene.core() for gene in parameters.genes],
+            grafts=parse_amount(parameters.grafts),
+            symmetries=_core.Symmetries(design.setting) if parameters.symmetry else None,
+            within=None if within is None else _core.Selection(design.mesh, list(within)),
             resumed=resumed,
         )
     except _core.CoreError as error:

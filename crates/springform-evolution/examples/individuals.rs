@@ -8,6 +8,7 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::{PhenotypeError, Setting};
 use springform_evolution::selection::{Weighting, WeightingParameters};
+use springform_evolution::variation::Variation;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
@@ -100,6 +101,7 @@ fn grown(recursive: bool, springs: u32) -> Result<Evolution, PhenotypeError> {
             max_springs: None,
         },
         selection: Selection::Comma,
+        variation: Variation::default(),
     };
     let strategy = Strategy {
         insertions: Amount::Count(if recursive { 8.0 } else { 20.0 }),

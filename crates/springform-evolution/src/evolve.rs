@@ -10,6 +10,7 @@ use crate::lineage::Lineage;
 use crate::mutation::{Candidates, Palette, Strategy};
 use crate::phenotype::{Evaluation, PhenotypeError, Setting};
 use crate::selection::{WEIGHTINGS, Weighting, WeightingParameters};
+use crate::variation::Variation;
 use crate::workspace::{Workspace, Workspaces};
 use rayon::prelude::*;
 use springform_mechanics::measures::Measures;
@@ -19,6 +20,7 @@ use springform_topology::cell_type::CellTypeId;
 use springform_topology::edit::Edit;
 use springform_topology::filters::Method;
 use springform_topology::forest::Forest;
+use springform_topology::gene::Instances;
 
 /// Mutants that are evaluated between two questions whether to go on.
 const BATCH: u32 = 256;
@@ -49,6 +51,8 @@ pub struct Parameters {
     pub criterion: Criterion,
     /// Who may become the next parent.
     pub selection: Selection,
+    /// Genes, symmetries and the region of mutation.
+    pub variation: Variation,
 }
 
 /// The genotype and standing from which a generation is drawn.
@@ -218,6 +222,15 @@ impl Evolution {
         Ok(Generation { number: self.generation, individuals, winner })
     }
 
+    /// The closed genotype of a mutant of the present parent, and the edits that made it, without its net; `None`
+    /// if it has none.
+    pub fn genotype(&self, generation: u32, index: u32) -> Option<(Forest, Vec<Edit>)> {
+        self.workspaces.with(|workspace| {
+            let (_, grown) = self.draw(generation, index, workspace, &mut |_| {});
+            grown.ok().map(|()| (workspace.forest.clone(), workspace.edits.clone()))
+        })
+    }
+
     /// Draws and evaluates one mutant of the present parent, the same whenever it is asked for.
     pub fn individual(&self, generation: u32, index: u32) -> Individual {
         self.individual_in(generation, index, &mut Workspace::default(), &mut |_| {})
@@ -231,18 +244,7 @@ impl Evolution {
         workspace: &mut Workspace,
         observe: &mut impl FnMut(Stage),
     ) -> Individual {
-        let mut draws = Draws::new(self.parameters.seed, u64::from(generation), u64::from(index));
-        let inherited = self.parent.strategy;
-        let strategy = if self.parameters.self_adapt { inherited.mutated(&mut draws) } else { inherited };
-        let palette = Palette {
-            types: &self.parameters.types,
-            catalogue: &self.setting.catalogue,
-            weights: &self.parameters.weights,
-        };
-        let Workspace { mutator, edits, .. } = workspace;
-        edits.clear();
-        mutator.mutate(&self.parent.candidates, &strategy, &palette, &mut draws, edits);
-        let grown = self.grow_mutant(workspace, observe);
+        let (strategy, grown) = self.draw(generation, index, workspace, observe);
         let Workspace { forest, evaluator, edits, .. } = workspace;
         let fingerprint = if grown.is_ok() { forest.fingerprint() } else { 0 };
         observe(Stage::Mutate);
@@ -266,17 +268,44 @@ impl Evolution {
         }
     }
 
+    /// Draws a mutant into a workspace.
+    fn draw(
+        &self,
+        generation: u32,
+        index: u32,
+        workspace: &mut Workspace,
+        observe: &mut impl FnMut(Stage),
+    ) -> (Strategy, Result<(), PhenotypeError>) {
+        let mut draws = Draws::new(self.parameters.seed, u64::from(generation), u64::from(index));
+        let inherited = self.parent.strategy;
+        let strategy = if self.parameters.self_adapt { inherited.mutated(&mut draws) } else { inherited };
+        let palette = Palette {
+            types: &self.parameters.types,
+            catalogue: &self.setting.catalogue,
+            weights: &self.parameters.weights,
+        };
+        let Workspace { mutator, edits, .. } = workspace;
+        edits.clear();
+        mutator.mutate(&self.parent.candidates, &strategy, &palette, &mut draws, edits);
+        let grown = self.grow_mutant(workspace, &mut draws, observe);
+        (strategy, grown)
+    }
+
     /// The mutant's closed forest; what closing took is appended to the edits.
     fn grow_mutant(
         &self,
         workspace: &mut Workspace,
+        draws: &mut Draws,
         observe: &mut impl FnMut(Stage),
     ) -> Result<(), PhenotypeError> {
         let Workspace { forest, edits, closure, .. } = workspace;
         forest.clone_from(&self.parent.forest);
         Edit::apply_all(edits, forest)?;
+        self.parameters.variation.complete(&self.setting, forest, edits, draws)?;
         observe(Stage::Mutate);
-        if self.setting.method == Method::Recursive {
+        if !forest.references().is_empty() {
+            edits.extend(self.setting.close(forest)?);
+        } else if self.setting.method == Method::Recursive {
             closure.close_after(&self.setting.mesh, forest, edits)?;
         }
         observe(Stage::Filter);
@@ -313,6 +342,8 @@ impl Parent {
         let (phenotype, lineage) = setting.evaluate_with_lineage(&forest)?;
         let inner_forces = if weighs(Weighting::Stress) { phenotype.inner_forces() } else { Vec::new() };
         let mut candidates = Candidates::new(&forest, &inner_forces);
+        let instances = Instances::new(&setting.mesh, &setting.catalogue, &forest)?;
+        candidates.restrict(|place| parameters.variation.may_draw(place) && instances.represents(place.face));
         for (weighting, _) in WEIGHTINGS.into_iter().filter(|&(weighting, _)| weighs(weighting)) {
             candidates.weigh(weighting, &parameters.weights);
         }

@@ -7,6 +7,7 @@
 //! All randomness of springFORM lives here; every draw comes from (seed, generation, individual), so results do
 //! not depend on the number of threads, nor on interruptions. There is no clock here and no input or output.
 
+pub mod census;
 pub mod draws;
 pub mod ending;
 pub mod evolve;
@@ -16,4 +17,5 @@ pub mod mutation;
 pub mod phenotype;
 pub mod selection;
 pub mod stress_seeking;
+pub mod variation;
 pub mod workspace;

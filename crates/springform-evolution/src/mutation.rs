@@ -82,6 +82,8 @@ struct Candidate {
     on: bool,
     /// Inner force of the cell, or of its subtree [N].
     force: f64,
+    /// It may be drawn.
+    drawable: bool,
     /// Among owners, the one right above; `NONE` for a top-level cell.
     above: usize,
 }
@@ -101,6 +103,9 @@ pub struct Candidates {
     expressed: Vec<Candidate>,
     /// Reachable cells that own children.
     owners: Vec<Candidate>,
+    /// How many of the expressed cells and of the owners may be drawn.
+    switchable: usize,
+    togglable: usize,
     deepest: u8,
     weighed: Vec<Weighed>,
 }
@@ -130,6 +135,7 @@ impl Candidates {
                 content: forest.content(cell),
                 on: forest.is_on(cell),
                 force: 0.0,
+                drawable: true,
                 above: above.last().copied().unwrap_or(NONE),
             };
             let stored = forest.children(cell).is_some();
@@ -149,7 +155,8 @@ impl Candidates {
                 expressed.push(Candidate { force, ..candidate });
             }
         });
-        Candidates { divisible, expressed, owners, deepest, weighed: Vec::new() }
+        let (switchable, togglable) = (expressed.len(), owners.len());
+        Candidates { divisible, expressed, owners, switchable, togglable, deepest, weighed: Vec::new() }
     }
 
     /// Works out the weights under a weighting ahead of the mutants that need them.
@@ -166,13 +173,25 @@ impl Candidates {
 
     fn sums(&self, step: usize, weighting: Weighting, parameters: &WeightingParameters) -> SumTree {
         let weight = |candidate: &Candidate| {
-            weight(weighting, parameters, candidate.place.level, self.deepest, candidate.force)
+            let level = candidate.place.level;
+            let drawn = candidate.drawable;
+            if drawn { weight(weighting, parameters, level, self.deepest, candidate.force) } else { 0.0 }
         };
         match step {
             INSERT => SumTree::new(self.divisible.iter().map(|&at| weight(&self.expressed[at]))),
             SWITCH => SumTree::new(self.expressed.iter().map(weight)),
             _ => SumTree::new(self.owners.iter().map(weight)),
         }
+    }
+
+    /// Lets only some cells be drawn, and counts only them; comes before [`Candidates::weigh`].
+    pub fn restrict(&mut self, may_draw: impl Fn(Place) -> bool) {
+        for list in [&mut self.expressed, &mut self.owners] {
+            list.iter_mut().for_each(|candidate| candidate.drawable = may_draw(candidate.place));
+        }
+        self.divisible.retain(|&at| self.expressed[at].drawable);
+        let drawable = |list: &[Candidate]| list.iter().filter(|candidate| candidate.drawable).count();
+        (self.switchable, self.togglable) = (drawable(&self.expressed), drawable(&self.owners));
     }
 }
 
@@ -239,7 +258,7 @@ impl Mutator {
         }
         self.weigh(candidates, SWITCH, strategy, palette);
         self.divided.iter().for_each(|&newborn| self.sums.clear(newborn));
-        self.draw(strategy.switches.of(expressed.len()), draws);
+        self.draw(strategy.switches.of(candidates.switchable), draws);
         for &at in &self.drawn {
             let Candidate { place: cell, content: from, .. } = expressed[at];
             let to = palette.draw(draws);
@@ -255,7 +274,7 @@ impl Mutator {
                 owner = owners[owner].above;
             }
         }
-        self.draw(strategy.toggles.of(owners.len()), draws);
+        self.draw(strategy.toggles.of(candidates.togglable), draws);
         for &at in &self.drawn {
             let Candidate { place: cell, on, .. } = owners[at];
             edits.push(Edit::Toggle { cell, on: !on });

@@ -12,8 +12,9 @@ use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::Catalogue;
 use springform_topology::edit::{Edit, EditError};
 use springform_topology::expression::{Expression, ExpressionError, Growth, express};
-use springform_topology::filters::{Method, recursive};
+use springform_topology::filters::Method;
 use springform_topology::forest::Forest;
+use springform_topology::gene::{self, GeneError};
 use thiserror::Error;
 
 /// Everything of a design but its forest: what stays the same while a forest is edited or evolved.
@@ -59,6 +60,9 @@ pub enum PhenotypeError {
     /// An edit does not fit.
     #[error(transparent)]
     Edit(#[from] EditError),
+    /// A gene can't be held where it is referred to.
+    #[error(transparent)]
+    Gene(#[from] GeneError),
     /// More cells than [`springform_topology::MAX_CELLS`].
     #[error("the forest has too many cells")]
     TooManyCells,
@@ -75,9 +79,9 @@ impl Setting {
     ///
     /// # Errors
     /// None on a valid forest.
-    pub fn close(&self, forest: &mut Forest) -> Result<Vec<Edit>, EditError> {
+    pub fn close(&self, forest: &mut Forest) -> Result<Vec<Edit>, GeneError> {
         match self.method {
-            Method::Recursive => recursive::close(&self.mesh, forest),
+            Method::Recursive => gene::close_alike(&self.mesh, &self.catalogue, forest),
             Method::Extensible | Method::Dynamic => Ok(Vec::new()),
         }
     }

@@ -5,6 +5,7 @@ use springform_topology::MAX_LEVEL;
 use springform_topology::cell_type::CellTypeId;
 use springform_topology::edit::Edit;
 use springform_topology::forest::{Content, Forest};
+use springform_topology::gene;
 
 /// A net that is refined where its force is.
 #[derive(Clone, Debug)]
@@ -56,6 +57,7 @@ impl StressSeeking {
         }];
         let mut forest = self.forest.clone();
         Edit::apply_all(&edits, &mut forest)?;
+        gene::follow(&setting.mesh, &setting.catalogue, &mut forest, &mut edits)?;
         edits.extend(setting.close(&mut forest)?);
         self.phenotype = setting.evaluate(&forest)?;
         self.forest = forest;

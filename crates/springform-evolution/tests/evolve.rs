@@ -10,6 +10,7 @@ use springform_evolution::evolve::{Evolution, Generation, Parameters, Selection}
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy as Rates};
 use springform_evolution::selection::{Weighting, WeightingParameters};
+use springform_evolution::variation::Variation;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::stage::Stage;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
@@ -222,6 +223,7 @@ fn comma_selection_takes_worse_parents_on_the_way() {
             max_springs: None,
         },
         selection: Selection::Comma,
+        variation: Variation::default(),
     };
     let (some, few) = (Amount::Count(2.0), Amount::Count(1.0));
     let rates = Rates { insertions: some, switches: few, toggles: few, weighting: Weighting::Exponential };

@@ -10,8 +10,8 @@
 //! finding and computation of general networks", 1974, with q = k.
 
 pub mod assembly;
-pub mod bounded;
 pub mod border;
+pub mod bounded;
 pub mod curve;
 pub mod embedding;
 pub mod equalisation;

@@ -1,6 +1,7 @@
 //! Runs and stress-seeking for Python.
 
 use crate::convert::{or_nan, refusal};
+use crate::grafting::{PatchTuple, Selection as Region, Symmetries, patch_of};
 use crate::measures::{columns, measures_dict};
 use crate::setting::Setting;
 use crate::topology::Forest;
@@ -13,9 +14,11 @@ use springform_evolution::fitness::{Criterion, Fitness, Standing, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::selection::{Weighting, WeightingParameters};
 use springform_evolution::stress_seeking;
+use springform_evolution::variation::Variation;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::measures::Measures;
 use springform_mechanics::stage::STAGES;
+use springform_topology::patch::Patch;
 use std::time::Instant;
 
 /// (insertions, switches, toggles) as (is a share, number) each, and the weighting.
@@ -67,7 +70,8 @@ impl Evolution {
     #[new]
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (setting, forest, *, population, seed, types, strategy, base, exponent, self_adapt,
-        fitness, suf_reference, niche, min_length, min_springs, max_springs, selection, threads, resumed=None))]
+        fitness, suf_reference, niche, min_length, min_springs, max_springs, selection, threads, genes=vec![],
+        grafts=(false, 1.0), symmetries=None, within=None, resumed=None))]
     fn new(
         py: Python<'_>,
         setting: &Setting,
@@ -87,6 +91,10 @@ impl Evolution {
         max_springs: Option<u32>,
         selection: &str,
         threads: usize,
+        genes: Vec<PatchTuple>,
+        grafts: (bool, f64),
+        symmetries: Option<&Symmetries>,
+        within: Option<&Region>,
         resumed: Option<Resumed>,
     ) -> PyResult<Self> {
         let unknown = |key: &str, word: &str| refusal(key, format!("unknown {key} '{word}'"));
@@ -94,6 +102,13 @@ impl Evolution {
             .iter()
             .map(|word| setting.setting.catalogue.find(word).ok_or_else(|| unknown("types", word)))
             .collect::<PyResult<Vec<_>>>()?;
+        let genes = genes
+            .into_iter()
+            .map(|gene| patch_of(gene, &setting.setting.catalogue))
+            .collect::<PyResult<Vec<_>>>()?;
+        let drawn: Vec<_> = types.iter().copied().chain(genes.iter().flat_map(Patch::types)).collect();
+        let orbits = symmetries.map(|group| group.orbits(setting, &drawn, forest)).transpose()?;
+        let within = within.map(|within| within.selection.clone());
         let fitness = match fitness {
             "suf" => Fitness::Suf,
             "differential" => Fitness::Differential,
@@ -118,6 +133,7 @@ impl Evolution {
             self_adapt,
             criterion: Criterion { fitness, reference, niche, min_length, min_springs, max_springs },
             selection,
+            variation: Variation { genes, grafts: amount(grafts), orbits, within },
         };
         let strategy = self::strategy(strategy)?;
         let resumed = resumed.map(|(generation, (springs, differential), suf)| {
@@ -216,6 +232,11 @@ impl Evolution {
 }
 
 impl Evolution {
+    /// What it converts.
+    pub fn inner(&self) -> &evolve::Evolution {
+        &self.evolution
+    }
+
     fn lines(&self, edits: &[springform_topology::edit::Edit]) -> Vec<String> {
         let catalogue = &self.evolution.setting().catalogue;
         edits.iter().map(|edit| edit.write(catalogue)).collect()

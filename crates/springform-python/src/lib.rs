@@ -3,12 +3,14 @@
 //! Arrays are handed to NumPy without a copy, and read from NumPy without a copy. The interpreter lock is free
 //! during native work. Every refusal raises `CoreError(key, problem)`.
 
+mod census;
 mod convert;
 mod evolution;
+mod grafting;
 mod measures;
 mod network;
-mod sensitivity;
 mod rigging;
+mod sensitivity;
 mod setting;
 mod topology;
 
@@ -26,8 +28,16 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<network::ImplicitEuler>()?;
     module.add_class::<sensitivity::Sensitivity>()?;
     module.add_class::<sensitivity::Equalisation>()?;
+    module.add_class::<grafting::Selection>()?;
+    module.add_class::<grafting::Symmetries>()?;
     module.add_class::<evolution::Evolution>()?;
+    module.add_class::<census::Census>()?;
     module.add_class::<evolution::StressSeeking>()?;
+    module.add_function(wrap_pyfunction!(grafting::lift, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::graft_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::check_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::best_frame, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::turned_patch, module)?)?;
     module.add_function(wrap_pyfunction!(network::solve, module)?)?;
     module.add_function(wrap_pyfunction!(network::residuals, module)?)?;
     Ok(())

@@ -1,6 +1,7 @@
 //! Designs without their forest, and the nets that grow in them, for Python.
 
 use crate::convert::{GroupArrays, groups, or_nan, refusal, rows};
+use crate::grafting::{FrameTuple, PatchTuple, frame_tuple, patch_of, patch_tuple};
 use crate::measures::measures_dict;
 use crate::network::{ForceStrainCurve, NetworkArrays, values, vectors};
 use crate::rigging::{Sections, pairs};
@@ -22,9 +23,10 @@ use springform_topology::edit::{Edit, EditError};
 use springform_topology::expression::{Expression, ExpressionError};
 use springform_topology::filters::Method;
 use springform_topology::forest::{self, Content, Override};
+use springform_topology::gene::{self, Gene, GeneId, Instance, Instances, Reference};
 use springform_topology::notation::{parse_content, read_top_cell, write_cell, write_content};
 use springform_topology::sides;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[pyclass(frozen, module = "springform._core")]
 pub struct Setting {
@@ -43,6 +45,18 @@ impl Setting {
     pub fn lines(&self, edits: &[Edit]) -> Vec<String> {
         edits.iter().map(|edit| edit.write(&self.setting.catalogue)).collect()
     }
+
+    /// Brings all instances of genes up to what edits did to one.
+    fn follow(&self, forest: &mut forest::Forest, mut edits: Vec<Edit>) -> PyResult<Vec<Edit>> {
+        let (mesh, catalogue) = (&self.setting.mesh, &self.setting.catalogue);
+        gene::follow(mesh, catalogue, forest, &mut edits).map_err(|error| refusal("forest.cells", error))?;
+        Ok(edits)
+    }
+
+    fn instances_of(&self, forest: &forest::Forest) -> PyResult<Instances> {
+        let (mesh, catalogue) = (&self.setting.mesh, &self.setting.catalogue);
+        Instances::new(mesh, catalogue, forest).map_err(|error| refusal("forest.cells", error))
+    }
 }
 
 #[pymethods]
@@ -53,6 +67,7 @@ impl Setting {
         py: Python<'_>,
         mesh: &BaseMesh,
         cell_types: Vec<(String, Vec<String>, bool, bool)>,
+        genes: Vec<(String, PatchTuple)>,
         method: &str,
         anchors: Vec<u32>,
         anchor_positions: Vec<Vector>,
@@ -66,6 +81,12 @@ impl Setting {
         for (name, springs, perimeter, fan) in &cell_types {
             let key = format!("cell_types.{name}");
             catalogue.define(name, springs, *perimeter, *fan).map_err(|error| refusal(key, error))?;
+        }
+        for (name, patch) in genes {
+            let key = format!("genes.{name}");
+            let patch = patch_of(patch, &catalogue)?;
+            let gene = Gene { name, patch };
+            catalogue.define_gene(gene).ok_or_else(|| refusal(key, "there are too many genes"))?;
         }
         let method = Method::parse(method).ok_or_else(|| refusal("method", "unknown method"))?;
         let mesh = mesh.mesh.clone();
@@ -87,6 +108,12 @@ impl Setting {
         Ok(Setting { setting })
     }
 
+    /// Base vertex of every anchor.
+    #[getter]
+    fn anchors(&self) -> Vec<u32> {
+        self.setting.anchors.clone()
+    }
+
     /// A forest: cells of `kind` subdivided to `level`, but for the cells given in notation.
     fn forest(
         &self,
@@ -100,11 +127,19 @@ impl Setting {
         let content = parse_content(kind, catalogue).map_err(|error| refusal("forest.type", error))?;
         let faces = self.setting.mesh.faces().len() as u32;
         let mut grown = forest::Forest::new(faces, content);
+        let mut referred = Vec::new();
         for (&face, text) in &cells {
             let key = format!("forest.cells.{face}");
             if face >= faces {
                 let problem = format!("there is no such top-level cell; the framework has {faces}, from 0");
                 return Err(refusal(key, problem));
+            }
+            if let Some(name) = text.strip_prefix('&') {
+                let reference = Reference::parse(name, catalogue).ok_or_else(|| {
+                    refusal(&key, format!("'{text}' is no gene: write its name and turn, such as &crown@1m"))
+                })?;
+                referred.push(Edit::Refer { seed: face, reference, set: true });
+                continue;
             }
             read_top_cell(&mut grown, face, text, catalogue).map_err(|error| refusal(key, error))?;
         }
@@ -112,6 +147,8 @@ impl Setting {
             subdivide_to(&mut grown, Place::top(face), level, content)
                 .map_err(|error| refusal("framework.level", error))?;
         }
+        Edit::apply_all(&referred, &mut grown).map_err(|error| refusal("forest.cells", error))?;
+        let _ = self.follow(&mut grown, referred)?;
         for (key, lines, what) in [("added", added, Override::Added), ("cut", cut, Override::Cut)] {
             for (at, pair) in
                 pairs(&self.setting.mesh, &format!("overrides.{key}"), &lines)?.into_iter().enumerate()
@@ -126,10 +163,15 @@ impl Setting {
     /// Notation of the top-level cells that differ from the default, and overrides (added, cut).
     fn notation(&self, forest: &Forest, default: &str) -> (BTreeMap<u32, String>, Vec<String>, Vec<String>) {
         let forest = &forest.forest;
-        let cells = (0..forest.top_level())
-            .map(|face| (face, write_cell(forest, forest.top(face), &self.setting.catalogue)))
-            .filter(|(_, text)| text != default)
-            .collect();
+        let (mesh, catalogue) = (&self.setting.mesh, &self.setting.catalogue);
+        let held: BTreeSet<u32> = Instances::new(mesh, catalogue, forest)
+            .map_or_else(|_| BTreeSet::new(), |all| all.faces().collect());
+        let written = |face: u32| match forest.references().get(&face) {
+            Some(reference) => Some(format!("&{}", reference.write(catalogue))),
+            None if held.contains(&face) => None,
+            None => Some(write_cell(forest, forest.top(face), catalogue)).filter(|text| text != default),
+        };
+        let cells = (0..forest.top_level()).filter_map(|face| Some((face, written(face)?))).collect();
         let (mut added, mut cut) = (Vec::new(), Vec::new());
         for (pair, what) in forest.overrides() {
             let [a, b] = pair.keys();
@@ -141,9 +183,44 @@ impl Setting {
 
     /// A forest changed by edits, each a line of text.
     fn edited(&self, forest: &Forest, edits: Vec<String>) -> PyResult<Forest> {
+        self.followed(forest, edits).map(|(forest, _)| forest)
+    }
+
+    /// The same, and all that was done: what the edits do to an instance of a gene is done to the others.
+    fn followed(&self, forest: &Forest, edits: Vec<String>) -> PyResult<(Forest, Vec<String>)> {
         let mut forest = forest.forest.clone();
-        Edit::apply_all(&self.edits(&edits)?, &mut forest).map_err(|error| refusal("edit", error))?;
-        Ok(Forest { forest })
+        let edits = self.edits(&edits)?;
+        Edit::apply_all(&edits, &mut forest).map_err(|error| refusal("edit", error))?;
+        let all = self.follow(&mut forest, edits)?;
+        Ok((Forest { forest }, self.lines(&all)))
+    }
+
+    /// Notation of a top-level cell as it stands, whether or not a gene holds it.
+    fn tree(&self, forest: &Forest, face: u32) -> PyResult<String> {
+        if face >= forest.forest.top_level() {
+            return Err(refusal("cell", format!("cell {face} does not exist")));
+        }
+        Ok(write_cell(&forest.forest, forest.forest.top(face), &self.setting.catalogue))
+    }
+
+    /// Genes with their cells as a forest holds them, in the order of their numbers.
+    fn genes(&self, forest: &Forest) -> PyResult<Vec<(String, PatchTuple)>> {
+        let (setting, forest) = (&self.setting, &forest.forest);
+        let instances = self.instances_of(forest)?;
+        let gene = |(number, gene): (u16, &Gene)| {
+            let now = instances.content(forest, &setting.catalogue, GeneId(number));
+            (gene.name.clone(), patch_tuple(now.as_ref().unwrap_or(&gene.patch), &setting.catalogue))
+        };
+        Ok((0..).zip(setting.catalogue.genes()).map(gene).collect())
+    }
+
+    /// (gene, frame, top-level cells) of everything that a forest holds by reference.
+    fn instances(&self, forest: &Forest) -> PyResult<Vec<(String, FrameTuple, Vec<u32>)>> {
+        let row = |one: &Instance| {
+            let name = self.setting.catalogue.gene(one.gene).name.clone();
+            (name, frame_tuple(one.frame), one.cells.iter().map(|cell| cell.face).collect())
+        };
+        Ok(self.instances_of(&forest.forest)?.list.iter().map(row).collect())
     }
 
     /// Type and turn, switch, and whether children are stored, of the cell at an address.

@@ -9,6 +9,7 @@
 //! ```
 
 use crate::address::whole_number;
+use crate::gene::{Gene, GeneId, GeneTable};
 use thiserror::Error;
 
 /// Number of a cell type in a [`Catalogue`].
@@ -78,20 +79,21 @@ impl CellType {
             .chain(centre)
     }
 
+    /// The springs with their points moved, in one order whatever the order in which they are defined.
+    pub fn springs_at(&self, moved: impl Fn(Point) -> Point) -> Vec<[Point; 2]> {
+        let ends = |&[a, b]: &[Point; 2]| {
+            let (a, b) = (moved(a), moved(b));
+            [a.min(b), a.max(b)]
+        };
+        let mut springs: Vec<[Point; 2]> = self.springs.iter().map(ends).collect();
+        springs.sort_unstable();
+        springs.dedup();
+        springs
+    }
+
     /// How many of the four turns give different springs: 1, 2 or 4.
     pub fn distinct_turns(&self) -> u8 {
-        let turned = |turn: u8| {
-            let mut springs: Vec<[Point; 2]> = self
-                .springs
-                .iter()
-                .map(|&[a, b]| {
-                    let (a, b) = (a.turned(turn), b.turned(turn));
-                    [a.min(b), a.max(b)]
-                })
-                .collect();
-            springs.sort_unstable();
-            springs
-        };
+        let turned = |turn: u8| self.springs_at(|point| point.turned(turn));
         let upright = turned(0);
         [1, 2].into_iter().find(|&turn| turned(turn) == upright).unwrap_or(4)
     }
@@ -115,6 +117,7 @@ pub enum CellTypeError {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Catalogue {
     types: Vec<CellType>,
+    genes: GeneTable,
 }
 
 impl Default for Catalogue {
@@ -137,7 +140,7 @@ impl Default for Catalogue {
                 fan,
             })
             .collect();
-        Catalogue { types }
+        Catalogue { types, genes: GeneTable::default() }
     }
 }
 
@@ -172,6 +175,11 @@ impl Catalogue {
         Ok(CellTypeId((self.types.len() - 1) as u8))
     }
 
+    /// The numbers of all types.
+    pub fn ids(&self) -> impl Iterator<Item = CellTypeId> + use<> {
+        (0..self.types.len()).map(|number| CellTypeId(number as u8))
+    }
+
     /// The type of a number that this catalogue gave out.
     pub fn get(&self, id: CellTypeId) -> &CellType {
         &self.types[usize::from(id.0)]
@@ -185,6 +193,26 @@ impl Catalogue {
             None => self.types.iter().position(|known| known.name == word)?,
         };
         Some(CellTypeId(index as u8))
+    }
+
+    /// Adds a gene; `None` if there is one of its name, or too many.
+    pub fn define_gene(&mut self, gene: Gene) -> Option<GeneId> {
+        self.genes.add(gene)
+    }
+
+    /// The gene of a number that this catalogue gave out.
+    pub fn gene(&self, id: GeneId) -> &Gene {
+        self.genes.get(id)
+    }
+
+    /// Finds a gene by name.
+    pub fn find_gene(&self, name: &str) -> Option<GeneId> {
+        self.genes.find(name)
+    }
+
+    /// All genes, in the order of their numbers.
+    pub fn genes(&self) -> &[Gene] {
+        self.genes.all()
     }
 
     /// How a type is written in cell notation: its number if built in, else its name.

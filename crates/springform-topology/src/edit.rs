@@ -6,6 +6,7 @@
 //! ```text
 //! 12.0 subdivide 1 1 6 1       12.0.3 retype 1 3@1       v3 e7:1/2 cut        v1 v17 add
 //! 12.0 merge 1 1 6 1           12 off      12 on         v3 e7:1/2 uncut      v1 v17 unadd
+//! 12 refer crown@1m            12 release crown@1m
 //! ```
 
 use crate::MAX_LEVEL;
@@ -13,6 +14,7 @@ use crate::address::{AddressError, Place};
 use crate::base_mesh::BaseMesh;
 use crate::cell_type::Catalogue;
 use crate::forest::{CellIndex, Content, Forest, NodePair, Override};
+use crate::gene::Reference;
 use crate::node_key::{NodeKey, NodeKeyError};
 use crate::notation::{NotationError, parse_content, write_content};
 use thiserror::Error;
@@ -59,6 +61,15 @@ pub enum Edit {
         /// Done, or taken back.
         set: bool,
     },
+    /// Holds a gene by reference, or no more; the cells stay as they are.
+    Refer {
+        /// Top-level cell of the seed.
+        seed: u32,
+        /// Gene and orientation.
+        reference: Reference,
+        /// Held, or no more.
+        set: bool,
+    },
 }
 
 /// Why an edit does not fit a forest, or a text is no edit.
@@ -82,6 +93,9 @@ pub enum EditError {
     /// The spring is already overridden, or not as the edit says.
     #[error("the spring {0} {1} is already overridden, or is not as the edit says")]
     Override(NodeKey, NodeKey),
+    /// The cell holds a gene already, or not the one that the edit says.
+    #[error("cell {0} already holds a gene, or not the one that the edit says")]
+    Refer(u32),
     /// A text with other words.
     #[error(
         "'{0}' is not an edit; write such as '12.0 subdivide 1 1 1 1', '12 retype 1 3@1', '12 off', 'v1 v2 cut'"
@@ -107,6 +121,18 @@ impl Edit {
             Edit::Retype { cell, from, to } => Edit::Retype { cell, from: to, to: from },
             Edit::Toggle { cell, on } => Edit::Toggle { cell, on: !on },
             Edit::Override { pair, what, set } => Edit::Override { pair, what, set: !set },
+            Edit::Refer { seed, reference, set } => Edit::Refer { seed, reference, set: !set },
+        }
+    }
+
+    /// The cell that the edit is about; `None` for a spring between two nodes.
+    pub fn cell(&self) -> Option<Place> {
+        match self {
+            Edit::Subdivide { cell, .. }
+            | Edit::Merge { cell, .. }
+            | Edit::Retype { cell, .. }
+            | Edit::Toggle { cell, .. } => Some(*cell),
+            Edit::Override { .. } | Edit::Refer { .. } => None,
         }
     }
 
@@ -163,6 +189,15 @@ impl Edit {
                 }
                 forest.set_override(pair, set.then_some(what));
             }
+            Edit::Refer { seed, reference, set } => {
+                if seed >= forest.top_level() {
+                    return Err(EditError::NoCell(Place::top(seed)));
+                }
+                if forest.references().get(&seed).copied() != (!set).then_some(reference) {
+                    return Err(EditError::Refer(seed));
+                }
+                forest.set_reference(seed, set.then_some(reference));
+            }
         }
         Ok(())
     }
@@ -210,6 +245,10 @@ impl Edit {
                 };
                 format!("{a} {b} {verb}")
             }
+            Edit::Refer { seed, reference, set } => {
+                let verb = if *set { "refer" } else { "release" };
+                format!("{seed} {verb} {}", reference.write(catalogue))
+            }
         }
     }
 
@@ -237,6 +276,12 @@ impl Edit {
                 from: parse_content(from, catalogue)?,
                 to: parse_content(to, catalogue)?,
             }),
+            [cell, verb @ ("refer" | "release"), gene] => {
+                let place = Place::parse(cell)?;
+                let reference = Reference::parse(gene, catalogue).filter(|_| place.level == 0);
+                let reference = reference.ok_or_else(malformed)?;
+                Ok(Edit::Refer { seed: place.face, reference, set: *verb == "refer" })
+            }
             [cell, state @ ("on" | "off")] => {
                 Ok(Edit::Toggle { cell: Place::parse(cell)?, on: *state == "on" })
             }

@@ -10,6 +10,7 @@
 
 use crate::address::Place;
 use crate::cell_type::{CellTypeId, QUAD};
+use crate::gene::Reference;
 use crate::node_key::NodeKey;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -78,6 +79,7 @@ pub struct Forest {
     free_blocks: Vec<u32>,
     /// Shared by copies until one of them changes it.
     overrides: Arc<BTreeMap<NodePair, Override>>,
+    references: BTreeMap<u32, Reference>,
 }
 
 impl Clone for Forest {
@@ -87,6 +89,7 @@ impl Clone for Forest {
             cells: self.cells.clone(),
             free_blocks: self.free_blocks.clone(),
             overrides: Arc::clone(&self.overrides),
+            references: self.references.clone(),
         }
     }
 
@@ -95,6 +98,7 @@ impl Clone for Forest {
         self.top = source.top;
         self.cells.clone_from(&source.cells);
         self.free_blocks.clone_from(&source.free_blocks);
+        self.references.clone_from(&source.references);
         // Copies of one forest stay out of each other's way in the count of its owners.
         if !Arc::ptr_eq(&self.overrides, &source.overrides) {
             self.overrides = Arc::clone(&source.overrides);
@@ -111,6 +115,7 @@ impl Forest {
             cells: vec![cell; faces as usize],
             free_blocks: Vec::new(),
             overrides: Arc::default(),
+            references: BTreeMap::new(),
         }
     }
 
@@ -225,6 +230,10 @@ impl Forest {
             }
             absorb(*what as u8);
         }
+        for (face, Reference { gene, orientation }) in &self.references {
+            face.to_le_bytes().into_iter().chain(gene.0.to_le_bytes()).for_each(&mut absorb);
+            absorb(orientation.turn | u8::from(orientation.mirrored) << 2);
+        }
         hash
     }
 
@@ -241,6 +250,18 @@ impl Forest {
     /// The designer's overrides, in order of node keys.
     pub fn overrides(&self) -> &BTreeMap<NodePair, Override> {
         &self.overrides
+    }
+
+    /// Genes held by reference, by the top-level cell of their seed.
+    pub fn references(&self) -> &BTreeMap<u32, Reference> {
+        &self.references
+    }
+
+    pub(crate) fn set_reference(&mut self, seed: u32, value: Option<Reference>) {
+        match value {
+            Some(value) => self.references.insert(seed, value),
+            None => self.references.remove(&seed),
+        };
     }
 
     pub(crate) fn set_override(&mut self, pair: NodePair, value: Option<Override>) {
@@ -283,7 +304,7 @@ impl Forest {
     }
 }
 
-/// Forests are equal when they hold the same cells at the same addresses and the same overrides.
+/// Forests are equal when they hold the same cells at the same addresses, the same overrides and genes.
 impl PartialEq for Forest {
     fn eq(&self, other: &Self) -> bool {
         fn same(a: &Forest, left: CellIndex, b: &Forest, right: CellIndex) -> bool {
@@ -299,6 +320,7 @@ impl PartialEq for Forest {
         }
         self.top == other.top
             && self.overrides == other.overrides
+            && self.references == other.references
             && (0..self.top).all(|face| same(self, CellIndex(face), other, CellIndex(face)))
     }
 }

@@ -19,9 +19,16 @@ pub mod expression;
 pub mod filters;
 pub mod forest;
 pub mod framework;
+pub mod gene;
+pub mod graft;
 pub mod node_key;
 pub mod notation;
+pub mod orientation;
+pub mod patch;
+pub mod selection;
 pub mod sides;
+pub mod symmetry;
+pub mod tree;
 
 /// Deepest level of subdivision that a cell may have.
 pub const MAX_LEVEL: u8 = 20;

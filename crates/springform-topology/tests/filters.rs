@@ -61,7 +61,7 @@ fn below(edit: &Edit) -> u32 {
     match *edit {
         Edit::Subdivide { cell, .. } | Edit::Merge { cell, .. } => cell.face,
         Edit::Retype { cell, .. } | Edit::Toggle { cell, .. } => cell.face,
-        Edit::Override { .. } => u32::MAX,
+        Edit::Override { .. } | Edit::Refer { .. } => u32::MAX,
     }
 }
 

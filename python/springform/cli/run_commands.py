@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from ..design import save
+from ..errors import InputError
 from ..evolution import OnGeneration, evolve, resume
 from ..evolution import Progress as GenerationProgress
 from ..files import WriteError
@@ -85,6 +86,19 @@ def evolve_command(
     min_springs: Annotated[int | None, typer.Option(help="Fewest springs allowed.")] = None,
     max_springs: Annotated[int | None, typer.Option(help="Most springs allowed.")] = None,
     selection: Annotated[str | None, typer.Option(help="comma or plus [comma].")] = None,
+    genes: Annotated[
+        list[Path] | None,
+        typer.Option(help="Patch file, or folder of them, to insert; may be given again."),
+    ] = None,
+    grafts: Annotated[
+        str | None, typer.Option(help="Most genes inserted in a mutant: 1, or 5% of the cells [1].")
+    ] = None,
+    symmetry: Annotated[
+        bool, typer.Option("--symmetry", help="Keep the symmetries of the framework.")
+    ] = False,
+    within: Annotated[
+        str | None, typer.Option(help='Cells within which mutation stays, as "rings(A7, 2)".')
+    ] = None,
     until_springs: Annotated[
         int | None, typer.Option(help="End once the parent has this many springs.")
     ] = None,
@@ -114,6 +128,10 @@ def evolve_command(
         "min_springs": min_springs,
         "max_springs": max_springs,
         "selection": selection,
+        "genes": gene_files(genes or []) or None,
+        "grafts": grafts,
+        "symmetry": symmetry,
+        "within": within,
         "until_springs": until_springs,
         "until_differential": until_differential,
         "until_suf": until_suf,
@@ -165,6 +183,17 @@ def show(
     report = {name: table[name][row].item() for name in ("springs", "force_differential", "suf")}
     save(design, out)
     print_report(report, as_json)
+
+
+def gene_files(paths: list[Path]) -> list[Path]:
+    """Return patch files: those given, and all in given folders, by name."""
+    files: list[Path] = []
+    for path in paths:
+        found = sorted(path.glob("*.toml")) if path.is_dir() else [path]
+        if not found:
+            raise InputError("holds no patch; name a file, or a folder with .toml files", file=path)
+        files += found
+    return files
 
 
 def _drive(run: Callable[[OnGeneration], Run], folder: Path, total: int, done: int) -> Run:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -125,6 +125,16 @@ def print_report(report: dict[str, Any], as_json: bool) -> None:
     width = max(20, *map(len, report))
     for name, value in report.items():
         print(f"{name.replace('_', ' '):<{width}} {_words(value)}")
+
+
+def print_table(head: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    """Print rows under a head on standard output, numbers to the right."""
+    texts = [list(head), *([_words(value) for value in row] for row in rows)]
+    widths = [max(len(row[at]) for row in texts) for at in range(len(head))]
+    for row in texts:
+        cells = [row[0].ljust(widths[0])]
+        cells += [text.rjust(width) for text, width in zip(row[1:], widths[1:], strict=True)]
+        print("  ".join(cells).rstrip())
 
 
 def _words(value: Any) -> str:

@@ -13,13 +13,24 @@ from ..design import Design
 from ..run import Run
 from . import style
 from .depth import depth_figure
+from .difference import plot_difference
 from .forces import forces_figure
 from .generations import generations_figure
 from .net import draw_net, net_figure
 from .pareto import pareto_figure
 from .view import AXONOMETRIC, FRONT, PLAN, SIDE, View
 
-__all__ = ["AXONOMETRIC", "FRONT", "PLAN", "SIDE", "View", "draw_net", "plot_design", "plot_run"]
+__all__ = [
+    "AXONOMETRIC",
+    "FRONT",
+    "PLAN",
+    "SIDE",
+    "View",
+    "draw_net",
+    "plot_design",
+    "plot_difference",
+    "plot_run",
+]
 
 
 def plot_design(design: Design, folder: str | os.PathLike[str]) -> list[Path]:

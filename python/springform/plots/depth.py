@@ -61,7 +61,7 @@ def depth_figure(design: Design) -> Figure:
     file is seen along the axis that shows most of it, as drawn. Lines inside a cell are the
     springs of its type, turned as the cell is.
     """
-    corners, parts = _layout(design)
+    corners, parts = layout(design)
     faces = design.mesh.faces.astype(np.intp)
     squares = design.cells.squares.astype(np.intp)
     quads = _bilinear(corners[squares[:, 0]], squares, np.array([(0, 0), (1, 0), (1, 1), (0, 1)]))
@@ -101,7 +101,7 @@ def depth_figure(design: Design) -> Figure:
     return figure
 
 
-def _layout(design: Design) -> tuple[Floats, NDArray[np.intp]]:
+def layout(design: Design) -> tuple[Floats, NDArray[np.intp]]:
     """Return the corners of every face on paper (f, 4, 2), and the face's part."""
     parts, corners = design.mesh.map
     if len(parts):

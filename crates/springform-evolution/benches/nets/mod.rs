@@ -5,6 +5,7 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{Weighting, WeightingParameters};
+use springform_evolution::variation::Variation;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::network::Network;
@@ -70,6 +71,7 @@ impl Net {
                 max_springs: None,
             },
             selection: Selection::Comma,
+            variation: Variation::default(),
         };
         let (three, one) = (Amount::Count(3.0), Amount::Count(1.0));
         let strategy =

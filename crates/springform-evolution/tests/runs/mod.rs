@@ -16,6 +16,7 @@ use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{WEIGHTINGS, WeightingParameters};
+use springform_evolution::variation::Variation;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::Measures;
@@ -97,6 +98,7 @@ pub fn parameters(method: Method, dice: &mut Dice) -> Parameters {
         self_adapt: dice.percent(50),
         criterion: criterion(dice),
         selection: dice.pick(&[Selection::Comma, Selection::Plus]),
+        variation: Variation::default(),
     }
 }
 

@@ -193,7 +193,8 @@ pub enum Support {
     Centre,
 }
 
-fn refine(forest: &Forest, place: Place, edits: &mut Vec<Edit>) {
+/// What subdividing an expressed cell takes: new children, or its stored ones switched on, undivided.
+pub(crate) fn refine(forest: &Forest, place: Place, edits: &mut Vec<Edit>) {
     let Some(cell) = forest.find(place) else { return };
     let Some(children) = forest.children(cell) else {
         edits.push(Edit::Subdivide { cell: place, children: [forest.content(cell); 4] });

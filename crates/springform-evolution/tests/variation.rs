@@ -1,0 +1,127 @@
+//! Properties of genes, symmetries and regions in evolution: kept, replayed, and drawn the same every time.
+
+mod runs;
+
+use proptest::prelude::*;
+use runs::common::{Dice, cases, dice};
+use runs::{Start, starts};
+use springform_evolution::evolve::{Evolution, Parameters};
+use springform_evolution::mutation::{Amount, Strategy};
+use springform_evolution::variation::Variation;
+use springform_topology::address::Place;
+use springform_topology::cell_type::CellTypeId;
+use springform_topology::edit::Edit;
+use springform_topology::filters::Method;
+use springform_topology::forest::{Content, Forest};
+use springform_topology::node_key::NodeKey;
+use springform_topology::orientation::{Mirrors, Orientation};
+use springform_topology::patch::{Patch, Viewpoint, lift};
+use springform_topology::selection::Selection;
+use springform_topology::symmetry::{Orbits, symmetries};
+use springform_topology::tree::Tree;
+use std::collections::BTreeSet;
+
+fn begin(start: &Start, dice: &mut Dice, variation: Variation) -> Option<Evolution> {
+    let parameters = runs::parameters(start.setting.method, dice);
+    let parameters = Parameters { population: 5, variation, ..parameters };
+    let strategy = runs::strategy(dice);
+    Evolution::new(start.setting.clone(), parameters, start.forest.clone(), strategy, None, 2).ok()
+}
+
+/// Every individual of some generations, replayed from its parent.
+fn replayed(evolution: &mut Evolution, generations: u32) -> Vec<(Forest, Forest)> {
+    let mut pairs = Vec::new();
+    for _ in 0..generations {
+        let parent = evolution.parent().forest.clone();
+        let (number, index) = (evolution.generation() + 1, 3);
+        let alone = evolution.individual(number, index);
+        let generation = evolution.advance().expect("the winner was evaluated");
+        assert_eq!(generation.individuals[index as usize].edits, alone.edits);
+        for individual in generation.individuals.iter().filter(|one| one.measures.is_some()) {
+            let mut forest = parent.clone();
+            Edit::apply_all(&individual.edits, &mut forest).expect("edits of an individual fit its parent");
+            assert_eq!(forest.fingerprint(), individual.fingerprint);
+            pairs.push((parent.clone(), forest));
+        }
+    }
+    pairs
+}
+
+fn patch(start: &Start, dice: &mut Dice) -> Patch {
+    let setting = &start.setting;
+    let vertex = dice.pick(&setting.anchors);
+    let round = Selection::rings(&setting.mesh, &[NodeKey::vertex(vertex)], dice.between(1, 2), 0);
+    let viewpoint = if dice.percent(50) { Viewpoint::Anchor(vertex) } else { Viewpoint::Anywhere };
+    let mirrors = Mirrors::new(&setting.catalogue);
+    lift(&setting.mesh, &start.forest, &round, viewpoint, &mirrors).expect("cells at an anchor").patch
+}
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    /// With symmetry every individual keeps the framework's symmetry, whatever is drawn, closed or grafted.
+    #[test]
+    fn symmetric_runs_stay_symmetric(mut start in starts(0), mut dice in dice(60)) {
+        let setting = &start.setting;
+        let Ok(group) = symmetries(&setting.mesh, &setting.anchors) else { return Ok(()) };
+        let types = (0..7).map(CellTypeId).collect::<BTreeSet<_>>();
+        let faces = start.forest.top_level();
+        start.forest = Forest::new(faces, Content::QUAD);
+        let orbits = Orbits::new(&group, faces, &setting.catalogue, &types).expect("built-in types have images");
+        let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
+        let variation =
+            Variation { genes, grafts: Amount::Count(2.0), orbits: Some(orbits.clone()), within: None };
+        let mesh = setting.mesh.clone();
+        let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
+        for (_, forest) in replayed(&mut evolution, 3) {
+            prop_assert_eq!(orbits.check(&mesh, &forest, &group), Ok(()));
+        }
+    }
+
+    /// Within a region mutation changes nothing outside; only closing may.
+    #[test]
+    fn evolution_stays_within_its_region(start in starts(12), mut dice in dice(60)) {
+        let vertex = dice.pick(&start.setting.anchors);
+        let level = dice.below(2) as u8;
+        let round = Selection::rings(&start.setting.mesh, &[NodeKey::vertex(vertex)], 1, level);
+        let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
+        let variation = Variation { genes, grafts: Amount::Share(0.2), orbits: None, within: Some(round.clone()) };
+        let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
+        for (parent, forest) in replayed(&mut evolution, 2) {
+            for face in 0..forest.top_level() {
+                let same = Tree::of(&parent, parent.top(face)) == Tree::of(&forest, forest.top(face));
+                let selected = round.faces().contains(&face);
+                prop_assert!(same || selected || start.setting.method == Method::Recursive);
+                prop_assert!(same || !round.contains(Place::top(face)) || selected);
+            }
+        }
+    }
+
+    /// Without other mutations a mutant is its parent with the gene in some places, whole cell by whole cell.
+    #[test]
+    fn genes_are_inserted(start in starts(12), mut dice in dice(60)) {
+        let mut gene = patch(&start, &mut dice);
+        let marked = Tree::read("1(1 1(1 1 1 1) 1 1)", &start.setting.catalogue).expect("a tree");
+        for tree in gene.cells.iter_mut().flat_map(|cell| cell.trees.values_mut()) {
+            tree.clone_from(&marked);
+        }
+        let variation = Variation { genes: vec![gene], ..Variation::default() };
+        let none = Amount::Count(0.0);
+        let strategy = Strategy { insertions: none, switches: none, toggles: none, ..runs::strategy(&mut dice) };
+        let drawn = runs::parameters(start.setting.method, &mut dice);
+        let parameters = Parameters { population: 5, self_adapt: false, variation, ..drawn };
+        let (setting, forest) = (start.setting.clone(), start.forest.clone());
+        let Ok(mut evolution) = Evolution::new(setting, parameters, forest, strategy, None, 1) else { return Ok(()) };
+        let images: Vec<Tree> = Orientation::all()
+            .filter_map(|turned| marked.oriented(turned, &Mirrors::new(&start.setting.catalogue)).ok())
+            .collect();
+        for (parent, forest) in replayed(&mut evolution, 1) {
+            let mut trees = (0..forest.top_level()).map(|face| {
+                let (before, now) = (Tree::of(&parent, parent.top(face)), Tree::of(&forest, forest.top(face)));
+                (now != before, now)
+            });
+            let closed = start.setting.method == Method::Recursive;
+            prop_assert!(trees.all(|(changed, tree)| closed || !changed || images.contains(&tree)));
+        }
+    }
+}
