@@ -7,6 +7,7 @@ use springform_evolution::evolve::{Evolution, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::selection::{Weighting, WeightingParameters};
+use springform_evolution::variation::Variation;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::stage::{STAGES, Stage};
 use springform_topology::cell_type::{DYNAMIC, NULL, QUAD};
@@ -46,6 +47,7 @@ fn evolution(method: Method) -> Evolution {
         self_adapt: true,
         criterion,
         selection: Selection::Comma,
+        variation: Variation::default(),
     };
     let strategy = Strategy {
         insertions: Amount::Count(4.0),
