@@ -315,9 +315,10 @@ def test_edits_of_orbits_keep_the_symmetry() -> None:
 
 def test_distilled_patches_are_genes(tmp_path: Path) -> None:
     run = sf.evolve(
-        sf.load("three-cylinders"), out=tmp_path / "run", population=20, generations=12, seed=3
+        sf.load("three-cylinders"), out=tmp_path / "run", population=20, generations=20, seed=3
     )
-    report = in_process("distil", run.folder, "--out", tmp_path / "genes", "--json").report
+    words = ["--out", tmp_path / "genes", "--least", 3, "--json"]
+    report = in_process("distil", run.folder, *words).report
     assert len(report["patches"]) == 12
     patches = [sf.load_patch(one["file"]) for one in report["patches"]]
     assert len({json.dumps(patch.core()) for patch in patches}) == 12
