@@ -19,6 +19,7 @@ COMMANDS = ["init", "solve", "seek", "evolve", "resume", "show", "plot"]
 SOLVE_KEYS = [
     *("nodes", "springs", "anchors", "cells", "force_differential", "force_min", "force_max"),
     *("force_mean", "residual", "converged", "iterations", "seconds"),
+    *("method", "slack", "rods", "load_sum", "reaction_max", "reaction_max_at", "reaction_sum"),
 ]
 RUN_KEYS = ["generations", "individuals", "seconds", "start", "best", "lowest", "digest"]
 STANDING_KEYS = ["springs", "force_differential", "suf"]
@@ -219,8 +220,15 @@ def test_solve_reports_what_the_api_finds(scene: str) -> None:
     measures = design.measure(equilibrium)
     del report["seconds"]
     assert report.pop("anchors") == len(design.anchors)
-    for name in ("residual", "converged", "iterations"):
+    for name in ("residual", "converged", "iterations", "method"):
         assert report.pop(name) == getattr(equilibrium, name)
+    assert (report.pop("slack"), report.pop("rods")) == (0, 0)
+    # Without loads, what holds the net adds up to nothing.
+    assert np.allclose(report.pop("load_sum"), 0)
+    assert np.allclose(report.pop("reaction_sum"), 0, atol=1e-9 * measures.force_max)
+    sizes = np.linalg.norm(equilibrium.reactions[design.anchors], axis=1)
+    assert report.pop("reaction_max") == sizes.max()
+    assert report.pop("reaction_max_at") == design.anchor_names[int(sizes.argmax())]
     assert report == {name: getattr(measures, name) for name in report}
     assert equilibrium.converged
     assert equilibrium.residual <= 1e-9

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "BaseMesh",
+    "Census",
     "CoreError",
     "Equalisation",
     "Evolution",
@@ -21,12 +22,19 @@ __all__ = [
     "Forest",
     "ImplicitEuler",
     "Net",
+    "Selection",
     "Sensitivity",
     "Setting",
     "StressSeeking",
+    "Symmetries",
     "__version__",
+    "best_frame",
+    "check_patch",
+    "graft_patch",
+    "lift",
     "residuals",
     "solve",
+    "turned_patch",
 ]
 
 _Floats: TypeAlias = NDArray[np.float64]
@@ -226,7 +234,7 @@ class _MeasuresAndApertures(_Measures):
     apertures: list[tuple[str, _Side, float, float, _Vector]]
     """(part, side, perimeter [m], area [m2], unit normal)."""
 
-class SolveResult(TypedDict):
+class _SolveResult(TypedDict):
     positions: _Floats
     reactions: _Floats
     loads: _Floats
@@ -381,7 +389,7 @@ class ImplicitEuler:
     def __new__(
         cls, network: _NetworkArrays, step: float, growth: float, drag: float
     ) -> ImplicitEuler: ...
-    def advance(self, tolerance: float) -> SolveResult:
+    def advance(self, tolerance: float) -> _SolveResult:
         """Make one time step and return the state after it."""
 
 class _Gradient(TypedDict):
@@ -447,7 +455,7 @@ class Equalisation:
     def iterations(self) -> int:
         """Steps made."""
 
-def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> SolveResult:
+def solve(network: _NetworkArrays, tolerance: float, iterations: int, solver: str) -> _SolveResult:
     """Solve a bare network by "direct", "implicit-euler" or "dynamic-relaxation"."""
 
 def residuals(network: _NetworkArrays) -> _Floats:

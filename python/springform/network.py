@@ -339,7 +339,7 @@ def residuals(network: Network) -> Floats:
     return _core.residuals(network)
 
 
-def _equilibrium(network: Network, result: _core.SolveResult, seconds: float) -> Equilibrium:
+def _equilibrium(network: Network, result: _core._SolveResult, seconds: float) -> Equilibrium:
     lengths = spring_lengths(result["positions"], network.springs)
     rest = network.rest_length
     strains = np.divide(lengths - rest, rest, out=np.full(len(rest), np.nan), where=rest > 0)

@@ -109,15 +109,15 @@ def solve_command(
         "force_min": measures.force_min,
         "force_max": measures.force_max,
         "force_mean": measures.force_mean,
+        "residual": equilibrium.residual,
+        "converged": equilibrium.converged,
+        "iterations": equilibrium.iterations,
+        "seconds": time.perf_counter() - began,
+        "method": equilibrium.method,
         "slack": slack_count(equilibrium, net.cords),
         "rods": len(net.network().rods),
         "load_sum": equilibrium.loads.sum(axis=0).tolist(),
         **_reactions(net, equilibrium),
-        "residual": equilibrium.residual,
-        "method": equilibrium.method,
-        "converged": equilibrium.converged,
-        "iterations": equilibrium.iterations,
-        "seconds": time.perf_counter() - began,
     }
     if out is not None:
         results.write(net, equilibrium, measures, out)
