@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nets import assert_order, solved
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 import springform as sf
+from equilibria import assert_order, solved
 
 COUNTS = [8, 16, 32, 64, 128]
 # So stiff along its axis that the rod keeps its length to 1e-6 and better, and what rounding of
@@ -90,7 +90,7 @@ def buckled(count: int, distance: float, rise: float) -> sf.Network:
 
 @pytest.mark.parametrize("degrees", [20.0, 60.0, 100.0, 110.0])
 def test_a_buckled_rod_is_the_elastica(degrees: float, record_property: Any) -> None:
-    # Love, "Mathematical theory of elasticity", 1927, articles 262 and 263: the end slope gives all.
+    # Love, "Mathematical theory of elasticity", 1927, articles 262 and 263.
     parameter = np.sin(np.radians(degrees) / 2) ** 2
     whole = ellipk(parameter)
     thrust = (2 * whole) ** 2

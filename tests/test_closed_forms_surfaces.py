@@ -1,12 +1,12 @@
-"""Nets of surfaces against closed forms: minimal trees, hypars, cylinders under pressure, catenoids."""
+"""Minimal trees, hypars, cylinders under pressure and catenoids against closed forms."""
 
 from typing import Any
 
 import numpy as np
 import pytest
-from nets import assert_order, solved, tube
 
 import springform as sf
+from equilibria import assert_order, solved, tube
 
 
 def acute_triangle(rng: np.random.Generator) -> np.ndarray:

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from nets import UP, chain, solved
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
 import springform as sf
+from equilibria import UP, chain, solved
 
 POINTS = [[-0.02, -1.0], [0, 0], [0.05, 12.0], [0.1, 15.0], [0.2, 40.0], [0.25, 41.0]]
 exact = settings(max_examples=200, deadline=None, derandomize=True, database=None)
@@ -160,7 +160,7 @@ def test_a_warm_start_ends_at_the_same_equilibrium() -> None:
     assert again.iterations == 0
     np.testing.assert_array_equal(again.positions, first.positions)
     # From the equilibrium of a neighbour too, and the supports stay where they are.
-    elsewhere = solved(cold, start=first.positions + [0.1, 0.2, -0.3])
+    elsewhere = solved(cold, start=first.positions + np.array([0.1, 0.2, -0.3]))
     np.testing.assert_allclose(elsewhere.positions, first.positions, atol=1e-7)
 
 

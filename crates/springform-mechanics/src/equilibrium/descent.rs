@@ -197,6 +197,7 @@ impl Descent {
         let mut share = 1.0;
         for _ in 0..MOST_SHARES {
             sum(&mut self.next, positions, share, &self.direction);
+            hill.supports.put_back(hill.network, &mut self.next);
             let (state, residual) = hill.look(&self.next, &mut self.next_pulls);
             let next_slope = -inner(&self.next_pulls, &self.direction);
             let change = state.energy - from.energy;

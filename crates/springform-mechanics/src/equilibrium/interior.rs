@@ -18,6 +18,9 @@ const SETTLED: f64 = 1e-2;
 /// Stiffness against moves of nodes in an interior-point step, as a share of loads over span.
 const HOLD: f64 = 1e-6;
 
+/// Least slope of a line that touches a measured curve, as a share of its secant's.
+const LEAST_SLOPE: f64 = 1e-3;
+
 /// Part of a length or force that is left when a step would take all of it.
 const MARGIN: f64 = 0.05;
 
@@ -47,6 +50,9 @@ pub(super) fn interior(
     let mut target = force * span;
     let (mut share, mut moved): (f64, f64) = (1.0, 0.0);
     for iteration in 0..limit {
+        for (spring, part) in parts.iter_mut().enumerate() {
+            part.follow_curve(network, spring, length(along(network, spring, &positions)));
+        }
         let products = parts.iter().filter_map(Part::product);
         let now = if count > 0.0 { products.sum::<f64>() / count } else { target };
         if now <= 1.5 * least && share > 0.9 && moved <= SETTLED * span {
@@ -94,6 +100,7 @@ pub(super) fn interior(
         for (position, step) in positions.iter_mut().zip(&moves) {
             (0..3).for_each(|axis| position[axis] += share * step[axis]);
         }
+        supports.put_back(network, &mut positions);
         for (part, step) in parts.iter_mut().zip(&steps) {
             part.advance(step, share);
         }
@@ -173,6 +180,15 @@ impl Part {
         }
         let tension = force.min(stiffness * length(along).max(1e-9 * span));
         Part::Cord(Cord { tension, slack: span, rest: rest_length - constant / stiffness, stiffness })
+    }
+
+    /// Takes the line that touches a measured curve at a length, or at its rest length where it is slack.
+    fn follow_curve(&mut self, network: &Network<'_>, spring: usize, length: f64) {
+        let (Part::Cord(cord), Some(curve)) = (self, network.curve_of(spring)) else { return };
+        let (k, rest) = (network.stiffness[spring], network.rest_length[spring]);
+        let length = length.max(rest);
+        cord.stiffness = k * curve.slope((length - rest) / rest).max(LEAST_SLOPE);
+        cord.rest = length - network.force_at(spring, length) / cord.stiffness;
     }
 
     fn product(&self) -> Option<f64> {

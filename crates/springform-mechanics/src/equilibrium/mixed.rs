@@ -68,6 +68,7 @@ pub(super) fn mixed(
         for (position, step) in positions.iter_mut().zip(&pulls) {
             (0..3).for_each(|axis| position[axis] += share * step[axis]);
         }
+        supports.put_back(network, &mut positions);
     }
     (positions, limit)
 }

@@ -19,6 +19,9 @@ const LEAST_DAMPING: f64 = 1e-9;
 /// Damping beyond which a step is too short to matter.
 const MOST_DAMPING: f64 = 1e12;
 
+/// Change of strain below which the energy of a curve is integrated and not a difference.
+const SHORT: f64 = 1e-3;
+
 /// Workspace of Newton's method.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(super) struct Newton {
@@ -97,6 +100,7 @@ impl Newton {
                 self.next.clear();
                 self.next
                     .extend(positions.iter().zip(&self.step).map(|(position, step)| sum(position, step)));
+                hill.supports.put_back(hill.network, &mut self.next);
                 let (_, next_residual) = hill.look(&self.next, &mut self.next_pulls);
                 let change = Change::new(hill, positions, &self.next);
                 let falls = change.energy <= -1e-4 * fall && next_residual.is_finite();
@@ -151,9 +155,11 @@ impl Change {
             change.energy += part;
             change.noise += 1e-14 * (part.abs() + noise);
         };
+        let mut moves: Vec<Lanes> = from.iter().zip(to).map(|(from, to)| difference(to, from)).collect();
+        // Where supports hold, rounding moves nodes against reactions, which may be large.
+        hill.supports.keep_free(&mut moves);
         for (spring, &[a, b]) in network.springs.iter().enumerate() {
-            let moved = |node: u32| subtract(vector(to[node as usize]), vector(from[node as usize]));
-            let moved = subtract(moved(b), moved(a));
+            let moved = subtract(vector(moves[b as usize]), vector(moves[a as usize]));
             let ends = [from, to].map(|positions| along(network, spring, positions));
             let (part, noise) = spring_change(network, spring, ends, moved);
             add_part(part, noise);
@@ -165,8 +171,8 @@ impl Change {
             let [a, b] = bend.lengths;
             add_part(after - before, 0.02 * 2.0 * bend.stiffness * (a + b) / (a * b));
         }
-        for (from, (to, load)) in from.iter().zip(to.iter().zip(hill.elements.loads())) {
-            add_part((0..3).map(|axis| load[axis] * (from[axis] - to[axis])).sum(), 0.0);
+        for (moved, load) in moves.iter().zip(hill.elements.loads()) {
+            add_part(-product(load, moved), 0.0);
         }
         change
     }
@@ -179,10 +185,15 @@ fn spring_change(network: &Network<'_>, spring: usize, ends: [Vector; 2], moved:
     let total = lengths[0] + lengths[1];
     let longer = if total > 0.0 { dot(moved, add(scale(ends[0], 2.0), moved)) / total } else { 0.0 };
     let [first, last] = lengths.map(|length| network.force_at(spring, length));
-    // While it pulls all the way, the force is linear.
-    let linear = first != 0.0 && last != 0.0 && network.curve_of(spring).is_none();
-    let part = if linear {
+    let pulls = first != 0.0 && last != 0.0;
+    // While it pulls all the way, the force is linear, or a curve.
+    let part = if pulls && network.curve_of(spring).is_none() {
         0.5 * (first + last) * longer
+    } else if pulls && longer.abs() <= SHORT * network.rest_length[spring] {
+        // Gauss's rule of two points is exact along a cubic; a difference of areas would lose the digits of short steps.
+        let middle = lengths[0] + 0.5 * longer;
+        let at = |side: f64| network.force_at(spring, middle + side * longer / 12.0_f64.sqrt());
+        0.5 * (at(-1.0) + at(1.0)) * longer
     } else {
         network.energy_at(spring, lengths[1]) - network.energy_at(spring, lengths[0])
     };
@@ -191,6 +202,10 @@ fn spring_change(network: &Network<'_>, spring: usize, ends: [Vector; 2], moved:
 
 fn product(a: &Lanes, b: &Lanes) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn difference(a: &Lanes, b: &Lanes) -> Lanes {
+    std::array::from_fn(|lane| a[lane] - b[lane])
 }
 
 fn sum(a: &Lanes, b: &Lanes) -> Lanes {

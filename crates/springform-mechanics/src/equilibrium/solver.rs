@@ -22,6 +22,9 @@ const MOST_DESCENT: u32 = 150;
 /// Newton steps after which tensions become unknowns of their own.
 const PATIENCE: u32 = 60;
 
+/// Times that tensions become unknowns of their own before Newton's steps have the rest.
+const MOST_ROUNDS: u32 = 3;
+
 /// Most times that loads follow the shape.
 const MOST_FOLLOWED: u32 = 200;
 
@@ -155,7 +158,7 @@ impl Solver {
     ) -> (Vec<Vector>, Status, u32, Method) {
         self.elements.build(network, more);
         let mut positions = std::mem::take(&mut self.positions);
-        parted(network, start, &mut positions);
+        parted(network, &self.supports, start, &mut positions);
         let (status, iterations, method) = self.move_to_rest(network, settings, &mut positions, limit);
         let moved = positions.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
         self.positions = positions;
@@ -194,17 +197,26 @@ impl Solver {
         if ended == Ended::Converged || ended == Ended::Overflow || iterations >= limit {
             return (status(ended), iterations, Method::Newton);
         }
-        let patience = MOST_INTERIOR.min(limit - iterations);
         let mut method = Method::Newton;
-        if let Some((moved, steps)) = interior(hill, &mut newton.tangent, positions, patience) {
-            iterations += steps;
-            if Change::new(hill, positions, &moved).energy < 0.0 {
-                *positions = moved;
-                method = Method::Interior;
+        let mut round = 1;
+        loop {
+            let patience = MOST_INTERIOR.min(limit - iterations);
+            if let Some((moved, steps)) = interior(hill, &mut newton.tangent, positions, patience) {
+                iterations += steps;
+                if Change::new(hill, positions, &moved).energy < 0.0 {
+                    *positions = moved;
+                    method = Method::Interior;
+                }
             }
+            let left = limit - iterations;
+            let patience = if round == MOST_ROUNDS { left } else { PATIENCE.min(left) };
+            let (ended, steps) = newton.solve(hill, positions, settings, patience);
+            iterations += steps;
+            if ended != Ended::Limit || iterations >= limit || round == MOST_ROUNDS {
+                return (status(ended), iterations, method);
+            }
+            round += 1;
         }
-        let (ended, steps) = newton.solve(hill, positions, settings, limit - iterations);
-        (status(ended), iterations + steps, method)
     }
 }
 
@@ -217,7 +229,7 @@ fn status(ended: Ended) -> Status {
 }
 
 /// The start, with the ends of springs of no length a little apart where their force needs a direction.
-fn parted(network: &Network<'_>, start: &[Vector], positions: &mut Vec<Lanes>) {
+fn parted(network: &Network<'_>, supports: &Supports, start: &[Vector], positions: &mut Vec<Lanes>) {
     positions.clear();
     positions.extend(start.iter().map(|&[x, y, z]| [x, y, z, 0.0]));
     for (spring, &[a, b]) in network.springs.iter().enumerate() {
@@ -226,9 +238,10 @@ fn parted(network: &Network<'_>, start: &[Vector], positions: &mut Vec<Lanes>) {
         }
         let node = if network.fixed[b as usize] == [true; 3] { a } else { b } as usize;
         let size = PARTING * network.rest_length[spring].max(PARTING);
-        for axis in (0..3).filter(|&axis| !network.fixed[node][axis]) {
-            // Different along each axis and for each spring, so that no symmetry holds them together.
-            positions[node][axis] += size * (1.0 + 0.1 * ((spring + axis) % 7) as f64);
+        // Different along each axis and for each spring, so that no symmetry holds them together.
+        let apart = std::array::from_fn(|axis| size * (1.0 + 0.1 * ((spring + axis) % 7) as f64));
+        for (position, apart) in positions[node].iter_mut().zip(supports.free_part(node, apart)) {
+            *position += apart;
         }
     }
 }

@@ -212,10 +212,13 @@ fn force_scale(network: &Network<'_>, forces: &[f64]) -> f64 {
     mean.max(least_force_scale(network))
 }
 
+/// Force by which residuals are measured where a net has none of its own [N]; far below any.
+const LEAST_FORCE: f64 = 1e-100;
+
 /// The least force that residuals are measured by [N]: a share of the loads, and of what springs with a rest length
 /// would carry if they were stretched by the span; rounding of positions hides what is less.
 pub(super) fn least_force_scale(network: &Network<'_>) -> f64 {
-    let loads = network.loads.iter().map(|&load| length(load)).fold(0.0, f64::max);
+    let loads = loads_at(network, &network.positions).into_iter().map(length).fold(LEAST_FORCE, f64::max);
     let stiffness = network.stiffness.iter().zip(network.rest_length.iter());
     let springs = stiffness.filter(|&(_, &rest)| rest > 0.0);
     let stretched = |span: f64| springs.map(|(k, rest)| k * rest.max(span)).fold(0.0, f64::max);

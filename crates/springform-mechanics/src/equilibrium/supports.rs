@@ -51,6 +51,16 @@ impl Supports {
         }
     }
 
+    /// Puts nodes that are free in part back to where they may be, off which rounding has led them.
+    pub(super) fn put_back(&self, network: &Network<'_>, positions: &mut [Lanes]) {
+        for (node, projection) in &self.partial {
+            let (start, position) = (network.positions[*node as usize], &mut positions[*node as usize]);
+            let moved = subtract([position[0], position[1], position[2]], start);
+            let [x, y, z] = projection.map(|row| dot(row, moved));
+            *position = [start[0] + x, start[1] + y, start[2] + z, 0.0];
+        }
+    }
+
     /// The part of a node's vector that the node can follow.
     pub(super) fn free_part(&self, node: usize, vector: Vector) -> Vector {
         if self.rows[node] == Graph::OUTSIDE {

@@ -48,7 +48,7 @@ def tube(along: int, around: int) -> tuple[np.ndarray, np.ndarray]:
 def assert_order(
     errors: Sequence[float], record_property: Any, name: str, order: float = 2.0
 ) -> None:
-    """Print the observed orders of errors at ever twice as many pieces; the last ones are `order`."""
+    """Print the observed orders of errors at ever twice as many pieces; all but the first fit."""
     found = np.log2(np.divide(errors[:-1], errors[1:]))
     record_property(f"{name} errors", str(list(errors)))
     record_property(f"{name} order", str(list(found)))
