@@ -18,7 +18,8 @@ from springform import scenes
 COMMANDS = ["init", "solve", "seek", "evolve", "resume", "show", "plot"]
 SOLVE_KEYS = [
     *("nodes", "springs", "anchors", "cells", "force_differential", "force_min", "force_max"),
-    *("force_mean", "residual", "converged", "iterations", "seconds"),
+    *("force_mean", "slack", "rods", "load_sum", "reaction_max", "reaction_max_at", "reaction_sum"),
+    *("residual", "method", "converged", "iterations", "seconds"),
 ]
 RUN_KEYS = ["generations", "individuals", "seconds", "start", "best", "lowest", "digest"]
 STANDING_KEYS = ["springs", "force_differential", "suf"]

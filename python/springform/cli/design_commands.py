@@ -18,7 +18,7 @@ from ..evolution import seek
 from ..exchange.obj import design_from_obj
 from ..files import WriteError
 from ..network import TOLERANCE, Equilibrium, Solver
-from ..readings import read_spring, slack_count
+from ..readings import read_spring, slack
 from ..run import Run, open_run
 from ..run_format import is_run
 from .terminal import (
@@ -109,7 +109,7 @@ def solve_command(
         "force_min": measures.force_min,
         "force_max": measures.force_max,
         "force_mean": measures.force_mean,
-        "slack": slack_count(equilibrium, net.cords),
+        "slack": int(slack(equilibrium, net.cords).sum()),
         "rods": len(net.network().rods),
         "load_sum": equilibrium.loads.sum(axis=0).tolist(),
         **_reactions(net, equilibrium),
