@@ -124,6 +124,18 @@ def nested(depth: int) -> str:
     return text
 
 
+def with_group(lines: str) -> str:
+    """The net with a group of springs as its last table."""
+    return f"{NET}\n[[springs.groups]]\n{lines}\n"
+
+
+def with_table(name: str, lines: str) -> str:
+    return f"{NET}\n[[{name}]]\n{lines}\n"
+
+
+LAST = NET.count("\n") + 3
+ROD = "bending_stiffness = 1.0\naxial_stiffness = 1e4"
+
 DESIGNS: dict[str, tuple[str, list[str]]] = {
     # The text itself.
     "empty": ("", ["springform"]),
@@ -133,6 +145,41 @@ DESIGNS: dict[str, tuple[str, list[str]]] = {
     "a key twice": (changed("around = 8", "around = 8\naround = 8"), ["broken TOML"]),
     "a picture": ("\x89PNG\r\n\x1a\n\0\0", ["broken TOML"]),
     "another file": ("v 0 0 0\nf 1 2 3 4\n", ["broken TOML", "net.toml:1:"]),
+    # Springs, rods, loads and supports.
+    "a group of nothing": (with_group('parts = ["trunk"]'), ["springs.groups[0]: says nothing", f"net.toml:{LAST - 1}:"]),
+    "a group of an unknown part": (with_group('stiffness = 2.0\nparts = ["trnk"]'), ["springs.groups[0].parts[0]", "did you mean trunk?", f"net.toml:{LAST + 1}:"]),
+    "a group along nothing": (with_group('stiffness = 2.0\nalong = ["trunk.left"]'), ["springs.groups[0].along[0]", "no boundary is called", f"net.toml:{LAST + 1}:"]),
+    "a group of an unknown type": (with_group('stiffness = 2.0\ntypes = ["stra"]'), ["springs.groups[0].types[0]", "no cell type 'stra'", f"net.toml:{LAST + 1}:"]),
+    "a group of a level too deep": (with_group("stiffness = 2.0\nlevels = [21]"), ["springs.groups[0].levels[0]: must be at most 20"]),
+    "a group of no pairs": (with_group("stiffness = 2.0\npairs = []"), ["springs.groups[0].pairs: is empty"]),
+    "a pair of one node": (with_group('stiffness = 2.0\npairs = ["v1"]'), ["springs.groups[0].pairs[0]", "does not name two nodes", f"net.toml:{LAST + 1}:"]),
+    "a pair of lost nodes": (with_group('stiffness = 2.0\npairs = ["v1 v999"]'), ["springs.groups[0].pairs[0]", "v999", f"net.toml:{LAST + 1}:"]),
+    "two laws": (with_group("stiffness = 2.0\naxial_stiffness = 3.0"), ["springs.groups[0].axial_stiffness: cannot stand beside stiffness", f"net.toml:{LAST + 1}:"]),
+    "two rest lengths": (with_group("rest_length = 2.0\nprestress = 3.0"), ["springs.groups[0].prestress: cannot stand beside rest_length"]),
+    "a rest length of a force": (with_group("force = 2.0\nrest_ratio = 0.5"), ["springs.groups[0].rest_ratio: means nothing beside force"]),
+    "a prestressed curve": (with_group("prestress = 2.0\ncurve = [[0, 0], [1, 1]]"), ["springs.groups[0].prestress: cannot stand beside a curve"]),
+    "a curve that falls": (with_group("curve = [[0, 0], [0.1, 2], [0.2, 1]]"), ["springs.groups[0].curve: point 2 has a force below", f"net.toml:{LAST}:"]),
+    "a curve of numbers": (with_group("curve = [0, 1]"), ["springs.groups[0].curve[0]: must be a point"]),
+    "no axial stiffness": (with_group("axial_stiffness = 0.0"), ["springs.groups[0].axial_stiffness: must be greater than 0"]),
+    "no force": (with_group("force = 0.0"), ["springs.groups[0].force: must not be 0"]),
+    "a negative ratio": (with_group("rest_ratio = [0.5, -1.0]"), ["springs.groups[0].rest_ratio[1]: must be a number, at least 0"]),
+    "an unknown sense": (with_group('sense = "pull"'), ["springs.groups[0].sense: must be 'tension', 'both' or 'compression'"]),
+    "two sections": (with_group("diameter = 0.1\narea = 0.1"), ["springs.groups[0].area: cannot stand beside a diameter"]),
+    "a frozen cord": (with_group("rest_ratio = 0.5\nthermal_expansion = 1.0\ntemperature = -2.0"), ["springs.groups[0]", "shrinks to nothing"]),
+    "a prestress beyond reach": (with_group("prestress = 1000.0"), ["springs.groups[0]", "without force"]),
+    "a rod along nothing": (with_table("rods", f'along = "trunk.strat"\n{ROD}'), ["rods[0].along", "did you mean trunk.start?", f"net.toml:{LAST}:"]),
+    "a rod without stiffness": (with_table("rods", 'along = "trunk.start"\nbending_stiffness = 1.0'), ["rods[0].axial_stiffness: is missing"]),
+    "a load on no node": (with_table("loads.nodes", "force = [0, 0, 1]"), ["loads.nodes[0]: must be on one node"]),
+    "a load on two nodes": (with_table("loads.nodes", 'force = [0, 0, 1]\nvertex = 3\nnode = "v3"'), ["loads.nodes[0]: must be on one node"]),
+    "a load on half a ring": (with_table("loads.nodes", 'force = [0, 0, 1]\nring = "trunk.start"'), ["loads.nodes[0]: has a ring or an index without the other"]),
+    "a load on a lost ring node": (with_table("loads.nodes", 'force = [0, 0, 1]\nring = "trunk.start"\nindex = 8'), ["loads.nodes[0].index: 8 is out of range"]),
+    "a load on a lost vertex": (with_table("loads.nodes", "force = [0, 0, 1]\nvertex = 999"), ["loads.nodes[0]", "no such vertex"]),
+    "a load on a node that is not grown": (with_table("loads.nodes", 'force = [0, 0, 1]\nnode = "e0:1/4"'), ["loads.nodes[0]", "the net has no node e0:1/4"]),
+    "pressure on a lost cell": (with_table("loads.pressures", 'pressure = 1.0\ncells = ["999"]'), ["loads.pressures[0].cells[0]", "no top-level cell 999", f"net.toml:{LAST + 1}:"]),
+    "pressure on no cell": (with_table("loads.pressures", 'pressure = 1.0\ncells = ["x"]'), ["loads.pressures[0].cells[0]", "not a cell address"]),
+    "an anchor that holds nothing": (changed("index = 4", 'index = 4\nholds = "q"'), ["framework.anchors[1].holds"]),
+    "an anchor that slides nowhere": (changed("index = 4", "index = 4\nline = [0, 0, 0]"), ["framework.anchors[1].line: is no direction"]),
+    "an anchor that slides and holds": (changed("index = 4", 'index = 4\nholds = "x"\nline = [0, 0, 1]'), ["framework.anchors[1].holds: cannot stand beside line or plane"]),
     # Keys and values.
     "an unknown key": (changed("stiffness =", "stifness ="), ["springs.stifness", "did you mean stiffness?", f"net.toml:{line_of(NET, 'stiffness')}:"]),
     "an unknown section": (changed("[springs]", "[spring]"), ["spring:", "did you mean springs?"]),

@@ -261,6 +261,7 @@ def test_a_missing_key_is_placed_on_the_nearest_table() -> None:
 def test_the_scenes_are_all_there() -> None:
     assert scenes.names() == [
         "canopy",
+        "hung-in-rods",
         "one-cylinder",
         "one-cylinder-quad",
         "ring-of-six",
@@ -268,6 +269,7 @@ def test_the_scenes_are_all_there() -> None:
         "three-cylinders",
         "three-cylinders-dense",
         "three-cylinders-dense-quad",
+        "three-cylinders-elastic",
         "three-cylinders-quad",
     ]
 

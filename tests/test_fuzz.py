@@ -132,6 +132,40 @@ SHEETS: Data = {
     },
     "forest": {"cells": {"4": "1(1(1 1 1 1) 1 1 1)"}},
 }
+RIGGED: Data = {
+    "springform": 1,
+    "name": "rigged",
+    "method": "dynamic",
+    "framework": {
+        "grid": "dia",
+        "cylinders": [{"name": "trunk", "around": 6, "along": 3}],
+        "anchors": [
+            anchor | {"holds": "xy"} if number == 1 else anchor
+            for number, anchor in enumerate(ring_anchors("trunk.start", "trunk.end", around=6))
+        ],
+    },
+    "forest": {"type": 1, "cells": {"0": "1(1 6 1 1)"}},
+    "springs": {
+        "stiffness": 2.0,
+        "groups": [
+            {"axial_stiffness": 9.8, "rest_ratio": [0.7, 0.8], "diameter": 0.0025},
+            {"parts": ["trunk"], "types": [1, "6"], "levels": [1], "force_density": 3.0},
+            {"along": ["ring", "trunk.end"], "force": 2.0, "self_weight": 0.1},
+            {"pairs": ["v0 v8"], "curve": [[0, 0], [0.2, 3.0]], "rest_length": 0.5},
+            {"levels": [0], "thermal_expansion": 1e-4, "temperature": -30.0, "sense": "both"},
+        ],
+    },
+    "rods": [
+        {"along": "trunk.start", "bending_stiffness": 2.0, "axial_stiffness": 1e4, "length": 9.0}
+    ],
+    "loads": {
+        "nodes": [{"ring": "trunk.end", "index": 1, "force": [0, 0, -1.0]}],
+        "pressures": [
+            {"parts": ["trunk"], "pressure": 0.2},
+            {"cells": ["3"], "levels": [0], "pressure": 0.1, "follower": True},
+        ],
+    },
+}
 MESH: Data = {
     "springform": 1,
     "name": "mesh",
@@ -152,7 +186,7 @@ MESH: Data = {
     "forest": {"type": 6, "cells": {"4": "2(1 6 6 1)"}},
     "overrides": {"added": ["v0 f4:1/2,1/2"], "cut": []},
 }
-DESIGNS = [CYLINDER, BRANCHING, SHEETS, MESH]
+DESIGNS = [CYLINDER, BRANCHING, SHEETS, MESH, RIGGED]
 
 
 # --- mutations that know the structure ---------------------------------------------------------
@@ -360,6 +394,52 @@ def change_springs(data: Data, draw: random.Random) -> None:
     )
 
 
+PROPERTIES: dict[str, list[Any]] = {
+    "parts": [["trunk"], ["left", "p"], [], ["x"], "trunk"],
+    "types": [[1], [6, "star"], [99], [True]],
+    "levels": [[0], [1, 2], [-1], [21]],
+    "along": [["ring"], ["seam"], ["trunk.end"], ["trunk"]],
+    "pairs": [["v0 v1"], ["v0 v0"], ["v0"], ["v0 v999999"]],
+    "rest_ratio": [0.5, [0.5, 0.9], [], [-1.0], 1e300],
+    "curve": [[[0, 0], [0.1, 2]], [[0, 0]], [[0, 1], [1, 2]], [[0.0]], 3.0],
+    "sense": ["tension", "both", "compression", "pull"],
+    "cells": [["0"], ["0.1", "2"], ["99999"], ["x"]],
+    "force": [[0.0, 0.0, -1.0], 2.0, 0.0, -1e300],
+    "node": ["v0", "v1", "e0:1/2", "q"],
+    "holds": ["x", "xy", "xyz", "q"],
+    "line": [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1e300, 0.0, 0.0]],
+    "plane": [[0.0, 1.0, 1.0], [0, 0]],
+    "follower": [True, False],
+}
+
+
+def change_rigging(data: Data, draw: random.Random) -> None:
+    """Give springs, rods, loads or an anchor another property, right or wrong."""
+    springs, loads = section_of(data, "springs"), section_of(data, "loads")
+    table, name = draw.choice(
+        [
+            *((springs, "groups"), (loads, "nodes"), (loads, "pressures")),
+            *((data, "rods"), (framework(data), "anchors")),
+        ]
+    )
+    rows = table.get(name)
+    if not isinstance(rows, list):
+        rows = table[name] = []
+    if not rows or draw.random() < 0.2:
+        rows.append({})
+    row = draw.choice(rows)
+    if not isinstance(row, dict):
+        return
+    for _ in range(draw.choice([1, 1, 2, 3])):
+        numbers = (
+            *("stiffness", "axial_stiffness", "force_density", "rest_length", "prestress"),
+            *("diameter", "area", "self_weight", "thermal_expansion", "temperature"),
+            *("bending_stiffness", "length", "pressure", "index", "vertex"),
+        )
+        key = draw.choice([*PROPERTIES, *numbers])
+        row[key] = draw.choice(PROPERTIES.get(key, [*NUMBERS, 0.5, 1.0, 2.0, 10.0]))
+
+
 def random_node(draw: random.Random) -> str:
     def fraction() -> str:
         if draw.random() < 0.9:
@@ -398,7 +478,7 @@ BLIND: list[Mutation] = [replace_one, delete_one, swap_two, repeat_row, misspell
 KNOWING: list[Mutation] = [
     *(change_cell, change_cell, change_type, change_method, change_grid, change_level, change_size),
     *(change_join, join_with_itself, move_anchors, scale_anchors, place_anchors, scatter_anchor),
-    *(drop_anchors, change_springs, override, define_type),
+    *(drop_anchors, change_springs, override, define_type, change_rigging, change_rigging),
 ]
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import InputError
 from .network import Equilibrium, Network
@@ -92,7 +93,8 @@ def read_spring(network: Network, equilibrium: Equilibrium, spring: int) -> list
     ]
 
 
-def slack_count(equilibrium: Equilibrium, springs: slice = slice(None)) -> int:
-    """Return how many springs carry next to nothing."""
+def slack(equilibrium: Equilibrium, springs: slice = slice(None)) -> NDArray[np.bool_]:
+    """Return which springs carry next to nothing."""
     forces = np.abs(equilibrium.forces)
-    return int(np.count_nonzero(forces[springs] <= VANISHING * forces.max(initial=0.0)))
+    loose: NDArray[np.bool_] = forces[springs] <= VANISHING * forces.max(initial=0.0)
+    return loose

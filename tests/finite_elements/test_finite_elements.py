@@ -13,14 +13,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import calculix
+import nets
 import numpy as np
 import opensees
 import pytest
 from engine import Answer, NotValidatedError, lengths
-
-import nets
-import springform as sf
 from nets import FormFound
+
+import springform as sf
 
 BALANCE = 1e-6
 """Largest reaction at a free node of a frozen net, over the largest force."""

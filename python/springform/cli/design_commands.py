@@ -18,7 +18,7 @@ from ..evolution import seek
 from ..exchange.obj import design_from_obj
 from ..files import WriteError
 from ..network import TOLERANCE, Equilibrium, Solver
-from ..readings import read_spring, slack_count
+from ..readings import read_spring, slack
 from ..run import Run, open_run
 from ..run_format import is_run
 from .terminal import (
@@ -114,7 +114,7 @@ def solve_command(
         "iterations": equilibrium.iterations,
         "seconds": time.perf_counter() - began,
         "method": equilibrium.method,
-        "slack": slack_count(equilibrium, net.cords),
+        "slack": int(slack(equilibrium, net.cords).sum()),
         "rods": len(net.network().rods),
         "load_sum": equilibrium.loads.sum(axis=0).tolist(),
         **_reactions(net, equilibrium),

@@ -9,14 +9,18 @@ from matplotlib.ticker import MaxNLocator
 
 from ..design import Design
 from ..network import Equilibrium
+from ..readings import slack
 from . import style
 
 _WIDTH, _HEIGHT = 7.0, 4.0
 
 
 def forces_figure(design: Design, equilibrium: Equilibrium) -> Figure:
-    """Return a histogram of spring forces [N]; smallest, mean and largest are marked."""
-    forces = equilibrium.forces
+    """Return a histogram of forces of cords that are not slack [N], with its ends and mean."""
+    cords = equilibrium.forces[design.cords]
+    forces = cords[~slack(equilibrium, design.cords)]
+    if not forces.size:
+        forces = cords
     norm = style.force_norm(forces)
     log = isinstance(norm, LogNorm)
     low, high = style.ends(norm)
@@ -28,6 +32,8 @@ def forces_figure(design: Design, equilibrium: Equilibrium) -> Figure:
     lost = int(np.count_nonzero(forces < low))
     figure = style.new_figure(_WIDTH, _HEIGHT)
     words = [f"{style.count(len(forces), 'spring')} by force"]
+    if len(forces) < len(cords):
+        words.append(f"{len(cords) - len(forces):,} slack and left out")
     if log:
         words.append("logarithmic scale")
     if lost:

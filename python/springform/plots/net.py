@@ -6,11 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize, to_rgba
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from ..design import Design
 from ..network import Equilibrium
+from ..readings import slack
 from . import style
 from .labels import place_labels
 from .view import AXONOMETRIC, Floats, View, along_springs, axonometric, broadest
@@ -31,13 +33,15 @@ def draw_net(
     """Draw a net at equilibrium into axes of any figure, and return its colours for a colour bar.
 
     Springs are coloured by force [N] on the scale `norm` (None: over all forces); stronger ones
-    are thicker, nearer ones hide farther ones where they cross. `names` writes the anchors' names.
+    are thicker, nearer ones hide farther ones where they cross. Slack ones are dashed and grey,
+    rods thick and green. `names` writes the anchors' names.
     Limits that the axes were given stay; otherwise the net fills them.
     """
     springs = design.network().springs
-    norm = style.force_norm(equilibrium.forces) if norm is None else norm
+    norm = _force_norm(design, equilibrium) if norm is None else norm
     seen = view.project(equilibrium.positions)
-    _draw_springs(axes, seen[springs.astype(np.intp)], equilibrium.forces, norm)
+    rods = np.arange(len(springs)) >= design.cords.stop
+    _draw_springs(axes, seen[springs.astype(np.intp)], equilibrium, rods, norm)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
     if axes.get_autoscale_on():
@@ -65,7 +69,7 @@ def net_figure(design: Design, equilibrium: Equilibrium) -> Figure:
     figure = style.new_figure(_WIDTH, height)
     style.add_title(figure, design.name, _facts(design, equilibrium), margin=_MARGIN)
 
-    norm = style.force_norm(equilibrium.forces)
+    norm = _force_norm(design, equilibrium)
     spare = inner - sum(span[0] for span in spans) * scale
     left = _MARGIN
     for view, span in zip(views, spans, strict=True):
@@ -91,7 +95,17 @@ def _facts(design: Design, equilibrium: Equilibrium) -> str:
         style.count(len(design.anchors), "anchor"),
         f"force differential {'undefined' if differential is None else style.plain(differential)}",
     ]
+    if loose := int(slack(equilibrium, design.cords).sum()):
+        words.append(f"{loose:,} slack (dashed)")
+    if rods := len(design.network().rods):
+        words.append(f"{style.count(rods, 'rod')} (green)")
     return "  ·  ".join(words if equilibrium.converged else [*words, "not in equilibrium"])
+
+
+def _force_norm(design: Design, equilibrium: Equilibrium) -> Normalize:
+    """Return the scale of the cords that carry force."""
+    forces = equilibrium.forces[design.cords]
+    return style.force_norm(forces[~slack(equilibrium, design.cords)])
 
 
 def _span(seen: Floats) -> tuple[float, float, Floats]:
@@ -100,7 +114,10 @@ def _span(seen: Floats) -> tuple[float, float, Floats]:
     return float(width), float(height), (low + high) / 2
 
 
-def _draw_springs(axes: Axes, ends: Floats, forces: Floats, norm: Normalize) -> None:
+def _draw_springs(
+    axes: Axes, ends: Floats, equilibrium: Equilibrium, rods: NDArray[np.bool_], norm: Normalize
+) -> None:
+    forces, loose = equilibrium.forces, slack(equilibrium) & ~rods
     count = len(ends)
     middles = ends.mean(axis=1)
     depth = middles[:, 2]
@@ -109,7 +126,10 @@ def _draw_springs(axes: Axes, ends: Floats, forces: Floats, norm: Normalize) -> 
     shade = np.ma.filled(norm(np.nan_to_num(forces)), 0.0)
     weight = float(np.clip((700 / max(count, 1)) ** 0.27, 0.58, 1.25))
     widths = weight * (0.65 + 1.0 * shade) * (0.75 + 0.4 * near)
+    widths = np.where(rods, 2.4 * (0.75 + 0.4 * near), np.where(loose, 0.6 * weight, widths))
     colours = style.FORCE_COLOURS(shade)
+    colours[rods], colours[loose] = to_rgba(style.ROD), to_rgba(style.SLACK)
+    dashes = [(0.0, (2.2, 1.6)) if one else "solid" for one in loose[order]]
     # Far springs recede a little into the paper.
     colours[:, :3] += (1 - colours[:, :3]) * (0.25 * (1 - near))[:, None]
 
@@ -127,6 +147,7 @@ def _draw_springs(axes: Axes, ends: Floats, forces: Floats, norm: Normalize) -> 
             list(lines),
             colors=np.stack([white, colours], axis=1)[order].reshape(2 * count, 4),
             linewidths=np.stack([widths + gaps, widths], axis=1)[order].reshape(-1),
+            linestyles=[one for dash in dashes for one in ("solid", dash)],
             capstyle="butt",
             zorder=2,
         ),

@@ -46,6 +46,10 @@ TITLE, TEXT, SMALL = 12.0, 8.0, 7.0
 """Sizes of type [pt]."""
 
 
+ROD, SLACK = "#14786b", "#8d97a2"
+"""Rods and slack cords, whose colours are on no scale."""
+
+
 def _part(name: str, first: float, last: float) -> Colormap:
     shades = matplotlib.colormaps[name](np.linspace(first, last, 256))
     return ListedColormap(shades, name=f"springform_{name}")

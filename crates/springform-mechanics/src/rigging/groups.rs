@@ -78,8 +78,13 @@ pub struct Properties<'a> {
 impl SpringGroup {
     /// The group asks which cells own a spring.
     pub(super) fn needs_owners(&self) -> bool {
-        let by_level = matches!(&self.rest, Some(Rest::Ratio(ratios)) if ratios.len() > 1);
-        by_level || !self.springs.cells.is_all()
+        self.rest.as_ref().is_some_and(Rest::is_by_level) || !self.springs.cells.is_all()
+    }
+}
+
+impl Rest {
+    fn is_by_level(&self) -> bool {
+        matches!(self, Rest::Ratio(ratios) if ratios.len() > 1)
     }
 }
 
@@ -114,7 +119,10 @@ impl Rigging {
         let properties = self.properties(mesh, expression);
         let mut curve = vec![NO_CURVE; lengths.len()];
         for (spring, properties) in properties.iter().enumerate() {
-            let drawn = Drawn { length: lengths[spring], level: level(expression, spring as u32) };
+            let by_level = properties.rest.is_some_and(|(_, rest)| rest.is_by_level());
+            // Owners are known only where a group asks for them.
+            let level = if by_level { level(expression, spring as u32) } else { 0 };
+            let drawn = Drawn { length: lengths[spring], level };
             let refuse = |error: Unfit| error.of(properties, expression, spring);
             let law = properties.law.unwrap_or(Law::Stiffness(network.stiffness[spring]));
             let elastic = resolve(law, properties, drawn, &self.curves).map_err(refuse)?;
