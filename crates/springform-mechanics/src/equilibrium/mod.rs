@@ -4,6 +4,7 @@
 //! solver ─ linear      force is stiffness times length: one sparse factor
 //!        ├ descent     strong prestress: many cheap steps in the metric of one such factor
 //!        ├ newton      weak prestress, rods, last digits: the exact tangent
+//!        ├ mixed       rods first: tensions that follow the step, which may be long
 //!        ├ interior    stiff and far-off nets: tensions as unknowns of their own
 //!        └ followers   around all of these: loads that follow the shape
 //! ```
