@@ -42,7 +42,11 @@ def moved(network: sf.Network, seed: int) -> sf.Network:
     return sf.Network(positions, network.springs, network.fixed, stiffness=network.stiffness)
 
 
-@pytest.mark.parametrize("scene", sf.scene_names())
+# Cords with rest lengths and rods are no linear systems; closed forms and other engines check those.
+LINEAR = [name for name in sf.scene_names() if not sf.load(name).network().rest_length.any()]
+
+
+@pytest.mark.parametrize("scene", LINEAR)
 def test_every_scene_agrees_with_scipy(scene: str) -> None:
     network = sf.load(scene).network()
     equilibrium = sf.solve(network)
@@ -51,7 +55,7 @@ def test_every_scene_agrees_with_scipy(scene: str) -> None:
     np.testing.assert_allclose(equilibrium.positions, scipy_equilibrium(network), atol=1e-9)
 
 
-@pytest.mark.parametrize("scene", sf.scene_names())
+@pytest.mark.parametrize("scene", LINEAR)
 def test_evolved_scenes_agree_with_scipy(scene: str) -> None:
     network = evolved(scene).network()
     equilibrium = sf.solve(network)
@@ -60,7 +64,7 @@ def test_evolved_scenes_agree_with_scipy(scene: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["implicit-euler", "dynamic-relaxation"])
-@pytest.mark.parametrize("scene", sf.scene_names())
+@pytest.mark.parametrize("scene", LINEAR)
 def test_solvers_by_steps_reach_the_same_equilibrium(scene: str, solver: sf.network.Solver) -> None:
     network = moved(evolved(scene).network(), seed=1)
     direct, animated = sf.solve(network), sf.solve(network, solver=solver)

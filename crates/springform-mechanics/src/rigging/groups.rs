@@ -130,7 +130,8 @@ impl Rigging {
             network.rest_length.to_mut()[spring] = elastic.rest;
             network.force.to_mut()[spring] = elastic.force;
             network.sense.to_mut()[spring] = properties.sense.unwrap_or(Sense::Tension);
-            weights[spring] = properties.weight.unwrap_or(0.0);
+            // Warmth makes a spring longer, not heavier: its weight is that of the cold length.
+            weights[spring] = properties.weight.unwrap_or(0.0) / elastic.warmer;
             curve[spring] = if let Law::Curve(number) = law { number } else { NO_CURVE };
         }
         if curve.iter().any(|&number| number != NO_CURVE) {
@@ -151,6 +152,8 @@ struct Elastic {
     stiffness: f64,
     rest: f64,
     force: f64,
+    /// Unstressed length over that of the cold spring.
+    warmer: f64,
 }
 
 /// What does not fit a spring.
@@ -197,14 +200,15 @@ fn resolve(law: Law, properties: &Properties<'_>, drawn: Drawn, curves: &[Curve]
     Ok(match law {
         Law::Stiffness(k) => {
             let rest = checked(cold(0.0, &|force| drawn.length - force / k), true)?;
-            Elastic { stiffness: k, rest: rest * warmer, force: 0.0 }
+            let warmer = if rest > 0.0 { warmer } else { 1.0 };
+            Elastic { stiffness: k, rest: rest * warmer, force: 0.0, warmer }
         }
         Law::AxialStiffness(axial) => {
             let rest = checked(cold(drawn.length, &|force| drawn.length / (1.0 + force / axial)), false)?;
-            Elastic { stiffness: axial / rest, rest: rest * warmer, force: 0.0 }
+            Elastic { stiffness: axial / rest / warmer, rest: rest * warmer, force: 0.0, warmer }
         }
-        Law::ForceDensity(density) => Elastic { stiffness: density, rest: 0.0, force: 0.0 },
-        Law::Force(force) => Elastic { stiffness: 0.0, rest: 0.0, force },
+        Law::ForceDensity(density) => Elastic { stiffness: density, rest: 0.0, force: 0.0, warmer: 1.0 },
+        Law::Force(force) => Elastic { stiffness: 0.0, rest: 0.0, force, warmer: 1.0 },
         Law::Curve(number) => {
             if matches!(rest, Some(Rest::Prestress(_))) {
                 return Err(Unfit::Prestressed);
@@ -212,7 +216,7 @@ fn resolve(law: Law, properties: &Properties<'_>, drawn: Drawn, curves: &[Curve]
             let rest = checked(cold(drawn.length, &|_| f64::NAN), false)?;
             let axial = curves[number as usize].axial_stiffness();
             // A measured curve keeps its axial stiffness; k r is that.
-            Elastic { stiffness: axial / rest / warmer, rest: rest * warmer, force: 0.0 }
+            Elastic { stiffness: axial / rest / warmer, rest: rest * warmer, force: 0.0, warmer }
         }
     })
 }
