@@ -100,6 +100,14 @@ class SetFramework(_Message):
     framework: dict[str, Any]
 
 
+class Undo(_Message):
+    """Undo the last action, or redo the one that was undone last."""
+
+    type: Literal["undo"] = "undo"
+    id: int
+    redo: bool
+
+
 class Travel(_Message):
     """Undo or redo until a number of actions is done."""
 
@@ -154,6 +162,7 @@ Request = Annotated[
     | SeekStress
     | SetValue
     | SetFramework
+    | Undo
     | Travel
     | Save
     | Move

@@ -46,6 +46,7 @@ from .messages import (
     SetFramework,
     SetValue,
     Travel,
+    Undo,
     Welcome,
     protocol,
 )
@@ -218,6 +219,10 @@ class Session:
     async def _change(self, request: Request) -> list[str]:
         cells: list[str] = []
         match request:
+            case Undo():
+                opened = self._journal
+                await self._in_thread(opened.redo if request.redo else opened.undo)
+                await self._show()
             case Travel():
                 await self._travel(request.position)
             case Save():

@@ -12,6 +12,7 @@ export interface Protocol {
     | SeekStress
     | SetValue
     | SetFramework
+    | Undo
     | Travel
     | Save
     | Move
@@ -108,6 +109,14 @@ export interface SetFramework {
   framework: {
     [k: string]: unknown;
   };
+}
+/**
+ * Undo the last action, or redo the one that was undone last.
+ */
+export interface Undo {
+  type: "undo";
+  id: number;
+  redo: boolean;
 }
 /**
  * Undo or redo until a number of actions is done.

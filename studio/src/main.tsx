@@ -1,0 +1,10 @@
+// The studio begins here.
+import "@fontsource-variable/inter";
+import { createRoot } from "react-dom/client";
+import { App } from "./panels/App";
+import "./panels/theme.css";
+import "./panels/layout.css";
+import "./panels/parts.css";
+import "./panels/start.css";
+
+createRoot(document.getElementById("root")!).render(<App />);
