@@ -73,7 +73,7 @@ demo: $(PACKAGE) # evolve the three-cylinder net and draw it
 test: calculix chromium $(PACKAGE) $(STUDIO_PAGE) # run the tests of the crates, of the Python package and of the studio
 	@cargo test --locked --quiet
 	pytest -n 2
-	cd studio && npx playwright test
+	cd studio && npx playwright test --project studio
 
 # Programs that tests need besides Rust, Python and Node.js; where it may, `make test` gets them by itself.
 .PHONY: calculix
@@ -142,6 +142,10 @@ messages: $(PACKAGE) $(STUDIO_MODULES) # write the types of the messages between
 pictures: demo # make the pictures of the README
 	@mkdir -p docs/pictures
 	cp $(DEMO)/pictures/net.png docs/pictures/three-cylinders-evolved.png
+
+.PHONY: screenshots
+screenshots: chromium $(PACKAGE) $(STUDIO_PAGE) # take the pictures of the studio
+	@cd studio && npx playwright test --project pictures
 
 .PHONY: lock
 lock: # renew Cargo.lock and requirements.lock

@@ -1,18 +1,15 @@
 // What people come to do, from the first click to the document that is left.
 import type { Page } from "@playwright/test";
 import { PNG } from "pngjs";
-import { converged, documentOf, expect, startStudio, test } from "./studio";
-
-/** Where an anchor is on the page [px]. */
-async function anchorPlace(page: Page, name: string): Promise<{ x: number; y: number }> {
-  const label = page.locator(".anchor-names span", { hasText: new RegExp(`^${name}$`) });
-  // The label stands 9 px right of the anchor and 20 px above it.
-  const box = (await label.evaluate((element) => {
-    const { left, top } = element.getBoundingClientRect();
-    return { left, top };
-  })) as { left: number; top: number };
-  return { x: box.left - 9, y: box.top + 20 };
-}
+import {
+  anchorPlace,
+  clickCellAbove,
+  converged,
+  documentOf,
+  expect,
+  startStudio,
+  test,
+} from "./studio";
 
 /** Colours of the picture, and the share of it that is not ground. */
 async function picture(page: Page): Promise<{ colours: number; lit: number; hash: number }> {
@@ -105,12 +102,7 @@ test("an architect relieves an anchor cell by cell", async ({ page, open }) => {
   await expect(card).toContainText("F = k (L − r)");
   await expect(card).toContainText(/0\.\d{3,} N/);
 
-  for (let up = 45; !(await card.textContent())?.startsWith("Cell") && up < 150; up += 7) {
-    await page.mouse.move(anchor.x, anchor.y - up);
-    await page.waitForTimeout(100);
-  }
-  await page.mouse.down();
-  await page.mouse.up();
+  await clickCellAbove(page, anchor);
   await expect(page.getByRole("heading", { name: /^Cell \d+$/ })).toBeVisible();
   await page.keyboard.press("s");
   await expect

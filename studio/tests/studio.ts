@@ -65,6 +65,29 @@ export async function converged(page: Page): Promise<void> {
   await expect(page.locator(".badge")).toHaveText("converged");
 }
 
+/** Where an anchor is on the page [px]. */
+export async function anchorPlace(page: Page, name: string): Promise<{ x: number; y: number }> {
+  const label = page.locator(".anchor-names span", { hasText: new RegExp(`^${name}$`) });
+  // The label stands 9 px right of the anchor and 20 px above it.
+  const box = (await label.evaluate((element) => {
+    const { left, top } = element.getBoundingClientRect();
+    return { left, top };
+  })) as { left: number; top: number };
+  return { x: box.left - 9, y: box.top + 20 };
+}
+
+/** Moves the pointer up from a place until it is on a cell, and clicks it. */
+export async function clickCellAbove(page: Page, place: { x: number; y: number }): Promise<void> {
+  const card = page.locator(".hover-card");
+  for (let up = 45; up < 200; up += 7) {
+    await page.mouse.move(place.x, place.y - up);
+    await page.waitForTimeout(100);
+    if ((await card.count()) && (await card.textContent())?.startsWith("Cell")) break;
+  }
+  await page.mouse.down();
+  await page.mouse.up();
+}
+
 export const test = base.extend<{ home: string; open: (source?: string) => Promise<Studio> }>({
   // biome-ignore lint/correctness/noEmptyPattern: Playwright reads what a fixture needs from the pattern
   home: async ({}, use) => {

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from .. import design_file
+from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
 from ..evolution import seek
-from ..network import Floats
 from .changes import Action, ForestChange, ValueChange, apply, value_at, values_of
 from .messages import EditCells, EditSpring, FixNode, MoveAnchor, SeekStress, SetFramework, SetValue
 

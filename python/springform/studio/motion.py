@@ -12,9 +12,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..design import Design
 from ..errors import InputError
-from ..network import Equilibrium, Floats, Network, animate, solve
+from ..network import Equilibrium, Network, animate, solve
 
 Command = Literal["run", "pause", "step", "reset"]
 
@@ -207,7 +208,7 @@ def _states(
                 break
             near = now.residual <= _NEAR or number >= _LAST_STEP
             if now.converged or near:
-                network = with_positions(network, now.positions)
+                network = network.started_at(now.positions)
                 break
             yield state(now, number, False)
         last = solve(network)
@@ -222,21 +223,17 @@ def _states(
         )
 
 
-def with_positions(network: Network, positions: Floats) -> Network:
-    """Return the same network at other positions."""
-    other = copy.copy(network)
-    other.positions = positions
-    return other
-
-
 def with_held(network: Network, positions: Floats, held: Mapping[int, Floats]) -> Network:
     """Return the network at positions, fixed nodes where they belong, and some nodes held."""
-    placed = np.where(network.fixed_axes, network.positions, positions)
-    axes = network.fixed_axes.copy()
+    free = network.started_at(positions)
+    if not held:
+        return free
+    placed, axes = free.positions.copy(), free.fixed_axes.copy()
     for row, place in held.items():
         placed[row] = place
         axes[row] = True
-    other = with_positions(network, placed)
+    other = copy.copy(free)
+    other.positions = placed
     other.fixed_axes = axes
     other.fixed = np.asarray(axes.all(axis=1))
     return other
