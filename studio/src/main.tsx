@@ -6,5 +6,6 @@ import "./panels/theme.css";
 import "./panels/layout.css";
 import "./panels/parts.css";
 import "./panels/start.css";
+import "./panels/evolve.css";
 
 createRoot(document.getElementById("root")!).render(<App />);

@@ -70,3 +70,18 @@ test("overlays", async ({ page, open }) => {
   await page.getByRole("button", { name: "Scale and palette" }).click();
   await take(page, "light");
 });
+
+test("evolution", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await take(page, "evolve-start");
+  await page.getByRole("button", { name: "Evolve", exact: true }).click();
+  await page.waitForTimeout(4000);
+  await take(page, "evolving");
+  await page.getByText("ended").waitFor({ timeout: 120_000 });
+  await page.getByRole("button", { name: "Pictures" }).click();
+  await page.waitForTimeout(2500);
+  await page.locator(".gallery-cell").nth(2).click();
+  await page.waitForTimeout(1500);
+  await take(page, "gallery");
+});

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from pydantic import BaseModel
+
 from .. import design_file
 from ..arrays import Floats
 from ..design import Design
@@ -11,6 +13,31 @@ from ..errors import DesignError, InputError
 from ..evolution import seek
 from .changes import Action, ForestChange, ValueChange, apply, value_at, values_of
 from .messages import EditCells, EditSpring, FixNode, MoveAnchor, SeekStress, SetFramework, SetValue
+
+
+def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Action, list[str]]:
+    """Return the action that a request asks for, and the cells to show afterwards.
+
+    `positions` are those of the nodes now, (n, 3) [m]. Raises `InputError`: it does not fit.
+    """
+    match request:
+        case EditCells():
+            return edit_cells(design, request)
+        case SeekStress():
+            return seek_stress(design, request)
+        case EditSpring():
+            action = edit_spring(design, request)
+        case MoveAnchor():
+            action = move_anchor(design, request)
+        case FixNode():
+            action = fix_node(design, request, positions)
+        case SetValue():
+            action = set_value(design, request)
+        case SetFramework():
+            action = set_framework(design, request)
+        case _:
+            raise InputError("is no request that changes a design", key="type")
+    return action, []
 
 
 def edit_cells(design: Design, request: EditCells) -> tuple[Action, list[str]]:

@@ -134,6 +134,49 @@ class Move(_Message):
     what: Literal["run", "pause", "step", "reset"]
 
 
+class Evolve(_Message):
+    """Start a run from the design, with parameters; what is left out has its default."""
+
+    type: Literal["evolve"] = "evolve"
+    id: int
+    parameters: dict[str, Any]
+
+
+class SteerRun(_Message):
+    """Pause a run, let it go on, end it, or change parameters from the next generation on."""
+
+    type: Literal["steer_run"] = "steer_run"
+    id: int
+    what: Literal["pause", "continue", "stop", "change"]
+    parameters: dict[str, Any] = {}
+
+
+class Look(_Message):
+    """Show a parent or an individual of the run instead of the design, or the design again."""
+
+    type: Literal["look"] = "look"
+    id: int
+    generation: Annotated[int, Field(ge=0)] | None
+    """None: the design."""
+    individual: Annotated[int, Field(ge=0)] | None
+    """None: the parent that the generation chose."""
+
+
+class Follow(_Message):
+    """Show the parent of the newest generation for as long as the run goes on, or no longer."""
+
+    type: Literal["follow"] = "follow"
+    id: int
+    on: bool
+
+
+class Reinstate(_Message):
+    """Make what is looked at the design."""
+
+    type: Literal["reinstate"] = "reinstate"
+    id: int
+
+
 class Hold(_Message):
     """Hold a node somewhere for as long as it is dragged."""
 
@@ -166,6 +209,11 @@ Request = Annotated[
     | Travel
     | Save
     | Move
+    | Evolve
+    | SteerRun
+    | Look
+    | Follow
+    | Reinstate
     | Hold
     | Release
     | Received,
@@ -217,6 +265,13 @@ class CellTypeChoice(_Message):
     name: str
 
 
+class Looked(_Message):
+    """A parent or an individual that is shown instead of the design."""
+
+    generation: int
+    individual: int | None
+
+
 class DocumentState(_Message):
     """The document as it is now."""
 
@@ -244,8 +299,43 @@ class DocumentState(_Message):
     framework: dict[str, Any]
     stiffness: float
     ring_factor: float
-    selection: list[Address] | None = None
-    """Cells that the action made, for the window that asked."""
+    looking: Looked | None
+    """What is shown instead of the design; figures and net are of that."""
+
+
+class GenerationRow(_Message):
+    """What a generation gave: its parent now, and the force differentials of its individuals."""
+
+    generation: int
+    springs: int
+    force_differential: float | None
+    suf: float | None
+    winner: int | None
+    """Individual that became parent; None: the parent stayed."""
+    least: float | None
+    low: float | None
+    """First quartile."""
+    median: float | None
+    high: float | None
+    """Third quartile."""
+    changed: bool
+    """Parameters were changed after it."""
+
+
+class RunState(_Message):
+    """The run of the document."""
+
+    type: Literal["run"] = "run"
+    status: Literal["none", "running", "paused", "ended", "failed"]
+    reason: str
+    folder: str
+    following: bool
+    parameters: dict[str, Any]
+    generations: int
+    """Generations made."""
+    first: int
+    """Generation of the first row; earlier ones are as they were told before."""
+    rows: list[GenerationRow]
 
 
 class Welcome(_Message):
@@ -275,7 +365,7 @@ class Problem(_Message):
     message: str
 
 
-Event = Annotated[DocumentState | Welcome | Reply | Problem, Field(discriminator="type")]
+Event = Annotated[DocumentState | RunState | Welcome | Reply | Problem, Field(discriminator="type")]
 
 
 # --- headers of binary frames ---------------------------------------------------------------------
@@ -327,7 +417,17 @@ class MotionHeader(_Message):
     arrays: list[ArrayHeader]
 
 
-Frame = Annotated[NetHeader | MotionHeader, Field(discriminator="frame")]
+class TableHeader(_Message):
+    """Springs and force differentials of all individuals from a generation on."""
+
+    frame: Literal["table"] = "table"
+    first: int
+    """Generation of the first individual."""
+    population: int
+    arrays: list[ArrayHeader]
+
+
+Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="frame")]
 
 
 # --- what is fetched ------------------------------------------------------------------------------

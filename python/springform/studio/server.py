@@ -22,13 +22,12 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .. import _core, scenes
-from ..design import Design, load
+from ..design import load
 from ..errors import InputError
-from .frames import net_frame, tables_of
 from .library import Library
 from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
-from .motion import State
-from .session import Session, motion_frame
+from .session import Session
+from .telling import picture_of
 
 HOST = "127.0.0.1"
 """The studio listens nowhere else."""
@@ -74,7 +73,7 @@ class Studio:
         """Return a scene's net at equilibrium, as a frame of its net and one of its motion."""
         if source not in self._pictures:
             loop = asyncio.get_running_loop()
-            self._pictures[source] = await loop.run_in_executor(None, _picture, load(source))
+            self._pictures[source] = await loop.run_in_executor(None, picture_of, load(source))
         return self._pictures[source]
 
 
@@ -93,6 +92,11 @@ def application(library: Library, token: str, port: int) -> Starlette:
             Route("/api/shelf", _answering(_shelf)),
             Route("/api/documents", _answering(_open), methods=["POST"]),
             Route("/api/documents/{document}", _answering(_document)),
+            Route("/api/documents/{document}/run", _answering(_table)),
+            Route(
+                "/api/documents/{document}/run/{generation:int}/{individual:int}",
+                _answering(_individual),
+            ),
             Route("/api/scenes/{scene}/picture", _answering(_scene_picture)),
             WebSocketRoute("/api/documents/{document}/socket", _socket),
             Mount("/", StaticFiles(directory=STATIC, check_dir=False)),
@@ -261,7 +265,23 @@ async def _open(request: Request) -> Opened:
 async def _document(request: Request) -> BaseModel:
     studio: Studio = request.app.state.studio
     session = await studio.session(request.path_params["document"])
-    return session.document_state()
+    return await session.document_state()
+
+
+async def _table(request: Request) -> Response:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    first = request.query_params.get("from", "1")
+    table = session.table(int(first) if first.isdecimal() else 1)
+    return Response(table, media_type="application/octet-stream")
+
+
+async def _individual(request: Request) -> Response:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    place = request.path_params["generation"], request.path_params["individual"]
+    picture = await asyncio.to_thread(session.picture, *place)
+    return Response(picture, media_type="application/octet-stream")
 
 
 async def _scene_picture(request: Request) -> Response:
@@ -280,7 +300,7 @@ async def _socket(socket: WebSocket) -> None:
         await socket.send_text(Refusal(problem=str(error)).model_dump_json())
         await socket.close(4000, str(error)[:100])
         return
-    window = session.join(_core.__version__)
+    window = await session.join(_core.__version__)
     sending = asyncio.create_task(_send(socket, session, window))
     try:
         while True:
@@ -301,22 +321,3 @@ async def _send(socket: WebSocket, session: Session, window: Any) -> None:
                 await socket.send_text(message)
             else:
                 await socket.send_bytes(message)
-
-
-def _picture(design: Design) -> bytes:
-    equilibrium = design.solve()
-    state = State(
-        revision=1,
-        positions=equilibrium.positions,
-        forces=equilibrium.forces,
-        reactions=equilibrium.reactions,
-        steps=0,
-        running=False,
-        settled=True,
-        converged=equilibrium.converged,
-        residual=equilibrium.residual,
-        reason=equilibrium.reason,
-        held=(),
-    )
-    net = net_frame(design, tables_of(design), 1, None)
-    return len(net).to_bytes(4, "little") + net + motion_frame(state, design)

@@ -6,8 +6,7 @@ import asyncio
 from collections import deque
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
-from dataclasses import asdict
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,48 +14,53 @@ import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from .. import _core
+from ..arrays import Floats
 from ..design import Design, load, save
-from ..design_schema import BUILT_IN_CELL_TYPES, DesignFile
+from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from . import commands, journal
 from .changes import Action, values_of
+from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .library import file_hash
 from .messages import (
     REQUEST,
     AnchorState,
-    CellTypeChoice,
     DocumentState,
-    EditCells,
-    EditSpring,
+    Evolve,
     Figures,
-    FixNode,
+    Follow,
     HistoryLine,
     Hold,
-    MotionHeader,
+    Look,
+    Looked,
     Move,
-    MoveAnchor,
     Problem,
     Received,
+    Reinstate,
     Release,
     Reply,
     Request,
+    RunState,
     Save,
-    SeekStress,
-    SetFramework,
-    SetValue,
+    SteerRun,
+    TableHeader,
     Travel,
     Undo,
     Welcome,
     protocol,
 )
 from .motion import Motion, State
+from .telling import cell_types_of, figures_of, motion_frame, picture_of
 
 _FRAMES_ON_THE_WAY = 3
 """Frames of motion that a window may not yet have drawn; more would only make it lag."""
 
 _NETS_KEPT = 8
 """Earlier nets that a window may still have, so that it is sent what changed."""
+
+_RUN_PERIOD = 0.1
+"""Seconds between messages about the run [s]."""
 
 _HISTORY_SHOWN = 200
 """Actions on each side of the position that windows are told."""
@@ -76,6 +80,8 @@ class Window:
         """State of motion that it was sent last."""
         self.on_the_way = 0
         """Frames of motion that it has not yet drawn."""
+        self.generations = 0
+        """Generations of the run that it was told of."""
 
     def tell(self, event: BaseModel) -> None:
         """Send an event."""
@@ -108,6 +114,11 @@ class Session:
         self._loop = asyncio.get_running_loop()
         self._windows: set[Window] = set()
         self._figures: dict[int, Figures] = {}
+        self._looking: tuple[Looked, Design, Figures] | None = None
+        self._following = False
+        self._run: Evolving | None = self._newest_run()
+        self._run_told = 0.0
+        self._run_waits = False
         self._revision = 0
         self._nets: dict[int, tuple[Design, Tables]] = {}
         self._state: State | None = None
@@ -124,18 +135,22 @@ class Session:
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
+            if self._run is not None:
+                await asyncio.to_thread(self._run.stop)
             self._motion.close()
             self._worker.shutdown()
             self._stack.close()
 
     # --- windows -------------------------------------------------------------------------------
 
-    def join(self, version: str) -> Window:
+    async def join(self, version: str) -> Window:
         """Return a new window; it is sent the document and the net."""
         window = Window()
-        self._windows.add(window)
         window.tell(Welcome(protocol=protocol(), version=version))
-        window.tell(self.document_state())
+        async with self._order:
+            self._windows.add(window)
+            window.tell(self._document_state())
+            self._tell_run(window)
         return window
 
     def leave(self, window: Window) -> None:
@@ -219,50 +234,60 @@ class Session:
     async def _change(self, request: Request) -> list[str]:
         cells: list[str] = []
         match request:
-            case Undo():
-                opened = self._journal
-                await self._in_thread(opened.redo if request.redo else opened.undo)
-                await self._show()
-            case Travel():
-                await self._travel(request.position)
+            case Evolve() | SteerRun():
+                await self._steer(request)
+                return []
+            case Look():
+                self._following = False
+                await self._look(request.generation, request.individual)
+                self._tell_runs()
+            case Follow():
+                await self._follow(request.on)
+            case Reinstate():
+                await self._reinstate()
             case Save():
                 await self._in_thread(lambda: self._save(request))
-            case EditCells():
-                action, cells = commands.edit_cells(self.design, request)
-                await self.act(lambda: action)
-            case SeekStress():
-                made: list[str] = []
-
-                def sought() -> Action:
-                    action, found = commands.seek_stress(self.design, request)
-                    made.extend(found)
-                    return action
-
-                await self.act(sought)
-                cells = made
-            case EditSpring():
-                await self.act(lambda: commands.edit_spring(self.design, request))
-            case MoveAnchor():
-                await self.act(lambda: commands.move_anchor(self.design, request))
-            case SetValue():
-                await self.act(lambda: commands.set_value(self.design, request))
-            case SetFramework():
-                await self.act(lambda: commands.set_framework(self.design, request))
-            case FixNode():
-                positions = self._state.positions if self._state else self.design.solve().positions
-                await self.act(lambda: commands.fix_node(self.design, request, positions))
+            case Undo() | Travel():
+                await self._travel(self._goal(request))
+            case _:
+                cells = await self.act(
+                    lambda: commands.action_of(self.design, request, self._now())
+                )
         self._tell_document()
         return cells
 
-    async def act(self, make: Callable[[], Action]) -> None:
-        """Do an action in the document's thread and show its net."""
-        await self._in_thread(lambda: self._journal.do(make()))
+    def _now(self) -> Floats:
+        """Return where the nodes of the net are."""
+        return self.design.solve().positions if self._state is None else self._state.positions
+
+    def _goal(self, request: Undo | Travel) -> int:
+        document = self._journal.document
+        if isinstance(request, Travel):
+            if request.position > len(document.actions):
+                raise InputError(f"there are {len(document.actions)} actions", key="position")
+            return request.position
+        if request.redo and document.position == len(document.actions):
+            raise InputError("there is nothing to redo")
+        if not request.redo and document.position == 0:
+            raise InputError("there is nothing to undo")
+        return document.position + (1 if request.redo else -1)
+
+    async def act(self, make: Callable[[], tuple[Action, list[str]]]) -> list[str]:
+        """Do an action in the document's thread, show its net, and return the cells it made."""
+        self._check_design_is_shown()
+
+        def done() -> list[str]:
+            action, cells = make()
+            self._journal.do(action)
+            return cells
+
+        cells = await self._in_thread(done)
         await self._show()
+        return cells
 
     async def _travel(self, position: int) -> None:
+        self._check_design_is_shown()
         document = self._journal.document
-        if position > len(document.actions):
-            raise InputError(f"there are {len(document.actions)} actions", key="position")
 
         def travel() -> None:
             while document.position > position:
@@ -310,17 +335,163 @@ class Session:
             self._journal.belong_to(settings.file, now)
         return held.to_file()
 
+    # --- the run -------------------------------------------------------------------------------
+
+    def _newest_run(self) -> Evolving | None:
+        """Return the run that the document had last, to look at and to go on with."""
+        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"))
+        for folder in reversed(folders):
+            run = Evolving(folder, self._run_changed)
+            try:
+                run.open()
+            except InputError:
+                continue  # it died before it was a run
+            return run
+        return None
+
+    async def _steer(self, request: Evolve | SteerRun) -> None:
+        run = self._run
+        if isinstance(request, Evolve):
+            if run is not None and run.status in ("running", "paused"):
+                await asyncio.to_thread(run.stop)
+            runs = self._journal.folder / "runs"
+            run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
+            await self._in_thread(lambda: run.start(self.design, request.parameters))
+            self._run, self._following = run, True
+            for window in self._windows:
+                window.generations = 0
+        elif run is None:
+            raise InputError("there is no run; start one")
+        elif request.what == "change":
+            await self._in_thread(lambda: run.change(request.parameters))
+        elif request.what == "continue":
+            await self._in_thread(run.go_on)
+        elif request.what == "pause":
+            run.pause()
+        else:
+            await asyncio.to_thread(run.stop)
+        self._tell_runs()
+
+    async def _follow(self, on: bool) -> None:
+        self._following = on
+        if on and self._run is not None:
+            await self._look(len(self._run.rows), None)
+        self._tell_runs()
+
+    async def _look(self, generation: int | None, individual: int | None) -> None:
+        if generation is None:
+            self._looking = None
+        else:
+            run = self._known_run()
+
+            def rebuild() -> tuple[Looked, Design, Figures]:
+                if individual is None:
+                    found = run.parent(generation)
+                else:
+                    found = run.individual(generation, individual)
+                looked = Looked(generation=generation, individual=individual)
+                return looked, found, figures_of(found)
+
+            self._looking = await self._in_thread(rebuild)
+        self._take_design()
+
+    async def _reinstate(self) -> None:
+        if self._looking is None:
+            raise InputError("look at an individual first")
+        looked, design, _ = self._looking
+        name = f"generation {looked.generation}"
+        if looked.individual is not None:
+            name += f", individual {looked.individual}"
+        self._looking, self._following = None, False
+        await self.act(lambda: (commands.whole(self.design, design, f"Take over {name}"), []))
+        self._tell_runs()
+
+    def _known_run(self) -> Evolving:
+        if self._run is None:
+            raise InputError("there is no run; start one")
+        return self._run
+
+    def table(self, first: int) -> bytes:
+        """Return the frame with all individuals of the run from a generation on."""
+        run = self._known_run()
+        header = TableHeader(first=first, population=run.parameters.population, arrays=[])
+        return encode(header, run.columns(first))
+
+    def picture(self, generation: int, individual: int) -> bytes:
+        """Return the net of an individual at equilibrium, as a frame of its net and its motion."""
+        return picture_of(self._known_run().individual(generation, individual))
+
+    def _check_design_is_shown(self) -> None:
+        if self._looking is not None:
+            raise InputError("this is not your design; take it over, or go back to your design")
+
+    def _run_changed(self) -> None:
+        """Called in the run's thread: windows are told a few times a second, not more."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._run_soon)
+
+    def _run_soon(self) -> None:
+        if self._run_waits:
+            return
+        self._run_waits = True
+        wait = max(0.0, self._run_told + _RUN_PERIOD - self._loop.time())
+        self._loop.call_later(wait, lambda: self._loop.create_task(self._run_now()))
+
+    async def _run_now(self) -> None:
+        self._run_waits, self._run_told = False, self._loop.time()
+        self._tell_runs()
+        run = self._run
+        if not self._following or run is None or not run.rows or self._order.locked():
+            return
+        async with self._order:
+            with suppress(InputError):
+                await self._look(len(run.rows), None)
+                self._tell_document()
+
+    def _tell_runs(self) -> None:
+        for window in self._windows:
+            self._tell_run(window)
+
+    def _tell_run(self, window: Window) -> None:
+        run = self._run
+        first = window.generations + 1
+        rows = [] if run is None else run.rows[first - 1 :]
+        if run is not None and run.rows:
+            # The last row told may have been marked as changed since.
+            first = max(1, first - 1)
+            rows = run.rows[first - 1 :]
+        window.generations = 0 if run is None else len(run.rows)
+        window.tell(
+            RunState(
+                status="none" if run is None else run.status,
+                reason="" if run is None else run.reason,
+                folder="" if run is None else str(run.folder),
+                following=self._following,
+                parameters={} if run is None else run.parameters.model_dump(mode="json"),
+                generations=window.generations,
+                first=first,
+                rows=rows,
+            )
+        )
+
     # --- what windows are told -----------------------------------------------------------------
 
-    def document_state(self) -> DocumentState:
-        """Return the document as windows are told of it."""
+    async def document_state(self) -> DocumentState:
+        """Return the document as windows are told of it, between two actions."""
+        async with self._order:
+            return self._document_state()
+
+    def _document_state(self) -> DocumentState:
         document, design = self._journal.document, self.design
+        looked = self._looking
+        nodes = design.nodes if looked is None else looked[1].nodes
+        held = design.anchors if looked is None else looked[1].anchors
         first = max(0, document.position - _HISTORY_SHOWN)
         shown = document.actions[first : document.position + _HISTORY_SHOWN]
         values = values_of(design)
         anchors = zip(
             design.anchor_names,
-            design.anchors.tolist(),
+            held.tolist(),
             design.file.framework.anchors,
             strict=True,
         )
@@ -337,10 +508,11 @@ class Session:
                 HistoryLine(label=action.label, number=number)
                 for number, action in enumerate(shown, start=first + 1)
             ],
-            figures=self._figures[document.position],
-            before=self._figures.get(document.position - 1),
+            figures=self._figures[document.position] if looked is None else looked[2],
+            before=self._figures.get(document.position - 1) if looked is None else None,
+            looking=None if looked is None else looked[0],
             anchors=[
-                AnchorState(name=name, node=design.nodes[node], position=list(anchor.position))
+                AnchorState(name=name, node=nodes[node], position=list(anchor.position))
                 for name, node, anchor in anchors
             ],
             cell_types=cell_types_of(design),
@@ -353,7 +525,7 @@ class Session:
         if self._journal.document.position not in self._figures:
             self._measure()
         self._revision += 1
-        design = self.design
+        design = self.design if self._looking is None else self._looking[1]
         self._node_keys = set(design.nodes)
         self._nets[self._revision] = (design, tables_of(design))
         self._nets.pop(self._revision - _NETS_KEPT, None)
@@ -367,7 +539,7 @@ class Session:
         self._figures[position] = figures_of(self.design)
 
     def _tell_document(self) -> None:
-        state = self.document_state()
+        state = self._document_state()
         for window in self._windows:
             window.tell(state)
 
@@ -384,49 +556,3 @@ class Session:
     def _call(self, what: Callable[[State], None], state: State) -> None:
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(what, state)
-
-
-def figures_of(design: Design) -> Figures:
-    """Return the measures of a design at equilibrium."""
-    equilibrium = design.solve()
-    measures = asdict(design.measure(equilibrium))
-    chosen = {name: measures[name] for name in Figures.model_fields if name in measures}
-    return Figures(**chosen, converged=equilibrium.converged, reason=equilibrium.reason)
-
-
-def cell_types_of(design: Design) -> list[CellTypeChoice]:
-    """Return the cell types that a design's method allows."""
-    names = dict(enumerate(BUILT_IN_CELL_TYPES))
-    words = {str(number): name for number, name in names.items()}
-    words |= {name: name for name in design.file.cell_types}
-    found = []
-    for word, name in words.items():
-        try:
-            design.setting.cell_type(word)
-        except _core.CoreError:
-            continue
-        found.append(CellTypeChoice(word=word, name=name))
-    return found
-
-
-def motion_frame(state: State, design: Design) -> bytes:
-    """Return the frame of a state of motion."""
-    residual = float(state.residual)
-    header = MotionHeader(
-        revision=state.revision,
-        steps=state.steps,
-        running=state.running,
-        settled=state.settled,
-        converged=state.converged,
-        residual=residual if np.isfinite(residual) else None,
-        reason=state.reason,
-        held=list(state.held),
-        arrays=[],
-    )
-    with np.errstate(over="ignore"):
-        arrays = {
-            "positions": state.positions.astype(np.float32).reshape(-1),
-            "forces": state.forces.astype(np.float32),
-            "reactions": state.reactions[design.anchors].astype(np.float32).reshape(-1),
-        }
-    return encode(header, arrays)

@@ -2,11 +2,12 @@
 import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
-import type { DocumentState, Protocol, Reply } from "../protocol/messages";
+import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
+import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
 import { NOTHING, type Selection, stillThere } from "./selection";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
@@ -42,6 +43,10 @@ export interface State {
   document: DocumentState | null;
   net: Net | null;
   motion: Motion | null;
+  run: Run | null;
+  individuals: Individuals;
+  /** Whether the individuals of the run are shown under the net. */
+  gallery: boolean;
   selection: Selection;
   hover: Hover | null;
   tool: ToolId;
@@ -86,6 +91,9 @@ export const store = createStore<State>()(() => ({
   document: null,
   net: null,
   motion: null,
+  run: null,
+  individuals: NO_INDIVIDUALS,
+  gallery: false,
   selection: NOTHING,
   hover: null,
   tool: "pull",
@@ -110,6 +118,8 @@ export function openDocument(id: string): void {
     document: null,
     net: null,
     motion: null,
+    run: null,
+    individuals: NO_INDIVIDUALS,
     selection: NOTHING,
     hover: null,
     busy: "",
@@ -175,6 +185,33 @@ export function select(selection: Selection): void {
 function takeEvent(event: Protocol["event"]): void {
   if (event.type === "document") store.setState({ document: event });
   if (event.type === "problem") notify(event.message);
+  if (event.type === "run") takeRun(event);
+}
+
+const TABLE_EVERY = 500; // ms
+let tableTimer = 0;
+
+function takeRun(state: RunState): void {
+  const before = store.getState().run;
+  const other = before?.state.folder !== state.folder;
+  store.setState({
+    run: withMessage(before, state),
+    ...(other ? { individuals: NO_INDIVIDUALS } : {}),
+  });
+  if (tableTimer || state.generations === 0) return;
+  tableTimer = window.setTimeout(async () => {
+    tableTimer = 0;
+    const { run, individuals } = store.getState();
+    const known = individuals.springs.length / individuals.population;
+    if (!run || known >= run.state.generations) return;
+    try {
+      const more = await moreIndividuals(individuals);
+      if (store.getState().run?.state.folder === run.state.folder)
+        store.setState({ individuals: more });
+    } catch (error) {
+      notify((error as Error).message);
+    }
+  }, TABLE_EVERY);
 }
 
 function takeFrame({ header, arrays }: Frame): void {
@@ -190,6 +227,7 @@ function takeFrame({ header, arrays }: Frame): void {
     });
     return;
   }
+  if (header.frame !== "motion") return;
   tell({ type: "received" });
   if (net && header.revision === net.revision) store.setState({ motion: motionOf(header, arrays) });
 }

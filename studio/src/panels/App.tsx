@@ -7,6 +7,8 @@ import { openDocument, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { commandOfKey, type Dialogs } from "./commands";
 import { DialogsContext, useDialogs } from "./dialogs";
+import { LookingBanner } from "./EvolvePanel";
+import { Gallery } from "./Gallery";
 import { Inspector } from "./Inspector";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { StartPage } from "./StartPage";
@@ -60,14 +62,17 @@ function Front() {
 
 function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
   const ready = useStudio((state) => state.document !== null);
+  const gallery = useStudio((state) => state.gallery && state.run !== null);
   return (
-    <div className="workbench">
+    <div className={gallery ? "workbench with-gallery" : "workbench"}>
       <TopBar />
       <ToolRail />
       <ViewportPane onStage={onStage}>
         <ToolHelp />
+        <LookingBanner />
         <LineState />
       </ViewportPane>
+      {gallery && <Gallery />}
       {ready ? <Inspector /> : <aside className="inspector" aria-label="Panels" />}
       <StatusBar />
     </div>

@@ -78,7 +78,7 @@ const MOUSE: [string, string][] = [
   ["Click, ⇧ click", "select, add to the selection"],
   ["Right button", "what can be done here"],
   ["Drag beside the net", "orbit"],
-  ["Right drag", "pan"],
+  ["Middle drag, ⇧ drag", "pan"],
   ["Wheel", "zoom to the pointer"],
 ];
 

@@ -12,11 +12,13 @@ export interface Pictured {
   motion: Motion;
 }
 
+const MOST_KEPT = 400;
 const known = new Map<string, Promise<Pictured>>();
 
 /** The net and the state at an address such as `/api/scenes/sheet/picture`; fetched once. */
-function pictured(path: string): Promise<Pictured> {
-  let found = known.get(path);
+function pictured(path: string, revision: string): Promise<Pictured> {
+  const name = `${path} ${revision}`;
+  let found = known.get(name);
   if (!found) {
     found = fetchPicture(path).then(([net, motion]) => {
       if (net.header.frame !== "net" || motion.header.frame !== "motion")
@@ -26,17 +28,22 @@ function pictured(path: string): Promise<Pictured> {
         motion: motionOf(motion.header, motion.arrays),
       };
     });
-    known.set(path, found);
+    known.set(name, found);
+    // The oldest are forgotten: a long run has more pictures than a window can hold.
+    if (known.size > MOST_KEPT) known.delete(known.keys().next().value!);
   }
   return found;
 }
 
 export function Thumbnail({
   path,
+  revision = "",
   width,
   height,
 }: {
   path: string;
+  /** Pictures at one path are drawn anew when this changes. */
+  revision?: string;
   width: number;
   height: number;
 }) {
@@ -45,17 +52,17 @@ export function Thumbnail({
   const palette = useStudio((state) => state.view.colour.palette);
   useEffect(() => {
     let wanted = true;
-    pictured(path).then(
+    pictured(path, revision).then(
       (picture) =>
         wanted &&
         canvas.current &&
         draw(canvas.current, picture, width, height, tableOf(palette, theme)),
-      () => known.delete(path),
+      () => known.delete(`${path} ${revision}`),
     );
     return () => {
       wanted = false;
     };
-  }, [path, width, height, palette, theme]);
+  }, [path, revision, width, height, palette, theme]);
   return <canvas ref={canvas} className="thumbnail" style={{ width, height }} />;
 }
 

@@ -3,10 +3,10 @@ import { engineAddress } from "./address";
 import { decodeFrame, type Frame } from "./frames";
 import type { Opened, Opening, Refusal, Shelf } from "./messages";
 
-async function answer(path: string, options: RequestInit = {}): Promise<Response> {
+async function answer(path: string, options: RequestInit = {}, query = ""): Promise<Response> {
   let response: Response;
   try {
-    response = await fetch(engineAddress(path), options);
+    response = await fetch(engineAddress(path) + query, options);
   } catch {
     throw new Error("the engine does not answer; start it again with: springform studio");
   }
@@ -34,4 +34,10 @@ export async function fetchPicture(path: string): Promise<[net: Frame, motion: F
   const buffer = await (await answer(path)).arrayBuffer();
   const length = new DataView(buffer).getUint32(0, true);
   return [decodeFrame(buffer, 4), decodeFrame(buffer, 4 + length)];
+}
+
+/** All individuals of a document's run from a generation on. */
+export async function fetchTable(document: string, first: number): Promise<Frame> {
+  const response = await answer(`/api/documents/${document}/run`, {}, `&from=${first}`);
+  return decodeFrame(await response.arrayBuffer());
 }

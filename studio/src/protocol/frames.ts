@@ -1,5 +1,7 @@
 // Binary frames as the engine sends them (python/springform/studio/frames.py): a header, then arrays.
-import type { MotionHeader, NetHeader } from "./messages";
+import type { MotionHeader, NetHeader, TableHeader } from "./messages";
+
+type Header = NetHeader | MotionHeader | TableHeader;
 
 /** The arrays of a frame by name. */
 export interface Arrays {
@@ -10,7 +12,7 @@ export interface Arrays {
 
 /** A frame, taken apart; its arrays are views of the buffer, not copies. */
 export interface Frame {
-  header: NetHeader | MotionHeader;
+  header: Header;
   arrays: Arrays;
 }
 
@@ -18,7 +20,7 @@ export interface Frame {
 export function decodeFrame(buffer: ArrayBuffer, start = 0): Frame {
   const length = new DataView(buffer).getUint32(start, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, start + 4, length));
-  const header = JSON.parse(text) as NetHeader | MotionHeader;
+  const header = JSON.parse(text) as Header;
   const found = new Map<string, Float32Array | Int32Array | Uint8Array>();
   let offset = start + 4 + length;
   for (const { name, type, length: count } of header.arrays) {

@@ -16,11 +16,16 @@ export interface Protocol {
     | Travel
     | Save
     | Move
+    | Evolve
+    | SteerRun
+    | Look
+    | Follow
+    | Reinstate
     | Hold
     | Release
     | Received;
-  event: DocumentState | Welcome | Reply | Problem;
-  frame: NetHeader | MotionHeader;
+  event: DocumentState | RunState | Welcome | Reply | Problem;
+  frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
   opened: Opened;
@@ -147,6 +152,57 @@ export interface Move {
   what: "run" | "pause" | "step" | "reset";
 }
 /**
+ * Start a run from the design, with parameters; what is left out has its default.
+ */
+export interface Evolve {
+  type: "evolve";
+  id: number;
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Pause a run, let it go on, end it, or change parameters from the next generation on.
+ */
+export interface SteerRun {
+  type: "steer_run";
+  id: number;
+  what: "pause" | "continue" | "stop" | "change";
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Show a parent or an individual of the run instead of the design, or the design again.
+ */
+export interface Look {
+  type: "look";
+  id: number;
+  /**
+   * None: the design.
+   */
+  generation: number | null;
+  /**
+   * None: the parent that the generation chose.
+   */
+  individual: number | null;
+}
+/**
+ * Show the parent of the newest generation for as long as the run goes on, or no longer.
+ */
+export interface Follow {
+  type: "follow";
+  id: number;
+  on: boolean;
+}
+/**
+ * Make what is looked at the design.
+ */
+export interface Reinstate {
+  type: "reinstate";
+  id: number;
+}
+/**
  * Hold a node somewhere for as long as it is dragged.
  */
 export interface Hold {
@@ -215,9 +271,9 @@ export interface DocumentState {
   stiffness: number;
   ring_factor: number;
   /**
-   * Cells that the action made, for the window that asked.
+   * What is shown instead of the design; figures and net are of that.
    */
-  selection: string[] | null;
+  looking: Looked | null;
 }
 /**
  * One action of the history.
@@ -264,6 +320,62 @@ export interface AnchorState {
 export interface CellTypeChoice {
   word: string;
   name: string;
+}
+/**
+ * A parent or an individual that is shown instead of the design.
+ */
+export interface Looked {
+  generation: number;
+  individual: number | null;
+}
+/**
+ * The run of the document.
+ */
+export interface RunState {
+  type: "run";
+  status: "none" | "running" | "paused" | "ended" | "failed";
+  reason: string;
+  folder: string;
+  following: boolean;
+  parameters: {
+    [k: string]: unknown;
+  };
+  /**
+   * Generations made.
+   */
+  generations: number;
+  /**
+   * Generation of the first row; earlier ones are as they were told before.
+   */
+  first: number;
+  rows: GenerationRow[];
+}
+/**
+ * What a generation gave: its parent now, and the force differentials of its individuals.
+ */
+export interface GenerationRow {
+  generation: number;
+  springs: number;
+  force_differential: number | null;
+  suf: number | null;
+  /**
+   * Individual that became parent; None: the parent stayed.
+   */
+  winner: number | null;
+  least: number | null;
+  /**
+   * First quartile.
+   */
+  low: number | null;
+  median: number | null;
+  /**
+   * Third quartile.
+   */
+  high: number | null;
+  /**
+   * Parameters were changed after it.
+   */
+  changed: boolean;
 }
 /**
  * First message to a window.
@@ -360,6 +472,18 @@ export interface MotionHeader {
    * Nodes that are dragged.
    */
   held: number[];
+  arrays: ArrayHeader[];
+}
+/**
+ * Springs and force differentials of all individuals from a generation on.
+ */
+export interface TableHeader {
+  frame: "table";
+  /**
+   * Generation of the first individual.
+   */
+  first: number;
+  population: number;
   arrays: ArrayHeader[];
 }
 /**

@@ -30,6 +30,11 @@ export class Eye {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
+    // The right button opens a menu, as everywhere; the middle one pans.
+    this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.PAN, RIGHT: null };
+    // The controls would keep the menu from opening.
+    const { _onContextMenu } = this.controls as unknown as { _onContextMenu: EventListener };
+    canvas.removeEventListener("contextmenu", _onContextMenu);
     this.controls.addEventListener("change", changed);
     this.controls.addEventListener("start", () => {
       this.glide = null;
