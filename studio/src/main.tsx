@@ -7,5 +7,6 @@ import "./panels/layout.css";
 import "./panels/parts.css";
 import "./panels/start.css";
 import "./panels/evolve.css";
+import "./panels/framework.css";
 
 createRoot(document.getElementById("root")!).render(<App />);

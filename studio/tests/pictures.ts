@@ -85,3 +85,9 @@ test("evolution", async ({ page, open }) => {
   await page.waitForTimeout(1500);
   await take(page, "gallery");
 });
+
+test("framework", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Framework" }).click();
+  await take(page, "framework");
+});

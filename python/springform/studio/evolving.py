@@ -134,7 +134,7 @@ class Evolving:
             raise InputError(f"there are generations 1 to {len(self.rows)}")
         if not 0 <= individual < self.parameters.population:
             raise InputError(f"there are individuals 0 to {self.parameters.population - 1}")
-        edits = self._algorithm(generation - 1, threads=1).individual(individual)
+        edits = self._kept_algorithm(generation - 1).individual(individual)
         return self.parent(generation - 1).edited(edits)
 
     def columns(self, first: int) -> dict[str, NDArray[np.float32]]:
@@ -257,21 +257,22 @@ class Evolving:
 
     def _algorithm(self, generation: int, *, threads: int) -> _core.Evolution:
         """Return the algorithm as it stood after a generation."""
-        if threads == 1 and generation in self._algorithms:
-            return self._algorithms[generation]
         at = self._resumed[generation]
-        made = start_evolution(
+        return start_evolution(
             self.parent(generation),
             at["parameters"],
             threads=threads,
             strategy=at["strategy"],
             resumed=(generation, self._start, at["suf"]),
         )
-        if threads == 1:
-            self._algorithms[generation] = made
+
+    def _kept_algorithm(self, generation: int) -> _core.Evolution:
+        """Return the same, kept for more individuals of the next generation; it never advances."""
+        if generation not in self._algorithms:
+            self._algorithms[generation] = self._algorithm(generation, threads=1)
             while len(self._algorithms) > _KEPT_ALGORITHMS:
-                self._algorithms.pop(next(iter(self._algorithms)))
-        return made
+                self._algorithms.pop(next(iter(self._algorithms)), None)
+        return self._algorithms[generation]
 
     def _read(self, run: Run) -> None:
         """Take over what a run's folder holds."""

@@ -7,7 +7,9 @@ export function HistoryPanel() {
   const { history, position } = useStudio((state) => state.document)!;
   const current = useRef<HTMLButtonElement>(null);
   // biome-ignore lint/correctness/useExhaustiveDependencies: brought into sight when the position changes
-  useEffect(() => current.current?.scrollIntoView({ block: "nearest" }), [position]);
+  useEffect(() => {
+    current.current?.scrollIntoView({ block: "nearest" });
+  }, [position]);
   const travel = (to: number) => ask({ type: "travel", position: to }, "Going through the history");
   const first = history[0]?.number ?? 1;
   const entries = [...(first === 1 ? [{ number: 0, label: "Start" }] : []), ...history];

@@ -3,12 +3,14 @@ import { Tabs } from "radix-ui";
 import { useState } from "react";
 import { CellTree } from "./CellTree";
 import { EvolvePanel } from "./EvolvePanel";
+import { FrameworkPanel } from "./FrameworkPanel";
 import { HistoryPanel } from "./HistoryPanel";
 import { NetPanel } from "./NetPanel";
 
 const PANELS = [
   { id: "net", name: "Net", Panel: NetPanel },
   { id: "cells", name: "Cells", Panel: CellTree },
+  { id: "framework", name: "Framework", Panel: FrameworkPanel },
   { id: "evolve", name: "Evolve", Panel: EvolvePanel },
   { id: "history", name: "History", Panel: HistoryPanel },
 ];
