@@ -101,7 +101,7 @@ def fix_node(design: Design, request: FixNode, positions: Floats) -> Action:
         name = _free_name(design)
         place = [round(value, 6) for value in positions[row].tolist()]
         vertex = int(request.node[1:])
-        new = {"name": name, "ring": None, "index": None, "vertex": vertex, "position": place}
+        new = {"name": name, "vertex": vertex, "position": place}
         return _value(design, f"Hold a node as anchor {name}", path, [*named, new])
     if row not in held:
         raise InputError("is no anchor", key=request.node)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..design import Design, Groups
 from ..network import Network
+from ..spring_laws import NO_CURVE
 from .messages import ArrayHeader, NetHeader
 
 Ints = NDArray[np.int32]
@@ -89,6 +90,8 @@ SPRING_COLUMNS = (
     "spring_level",
     "spring_part",
     "spring_ring",
+    "spring_law",
+    "area",
     "stiffness",
     "rest_length",
     "constant_force",
@@ -156,17 +159,30 @@ def _spring_columns(design: Design, network: Network) -> dict[str, NDArray[Any]]
     owners = np.repeat(np.arange(len(cells.addresses)), np.diff(starts))
     level = np.zeros(len(network.springs), dtype=np.uint8)
     part = np.zeros(len(network.springs), dtype=np.uint8)
+    ring = np.zeros(len(network.springs), dtype=np.uint8)
+    ring[design.cords] = design._net.ring
     order = np.argsort(cells.squares[owners, 1], kind="stable")
     level[items[order]] = cells.squares[owners[order], 1]
     part[items[order]] = _parts_of_faces(design)[cells.squares[owners[order], 0]]
     return {
         "spring_level": level,
         "spring_part": part,
-        "spring_ring": design._net.ring.astype(np.uint8),
+        "spring_ring": ring,
+        "spring_law": _laws(design, network),
+        "area": np.nan_to_num(network.area, nan=0.0).astype(np.float32),
         "stiffness": network.stiffness.astype(np.float32),
         "rest_length": network.rest_length.astype(np.float32),
         "constant_force": network.force.astype(np.float32),
     }
+
+
+def _laws(design: Design, network: Network) -> NDArray[np.uint8]:
+    """Return the law of every spring: 0 stiffness, 1 constant force, 2 curve, 3 link of a rod."""
+    laws = np.where(network.stiffness == 0, 1, 0).astype(np.uint8)
+    if network.curve.size:
+        laws[network.curve != NO_CURVE] = 2
+    laws[design.cords.stop :] = 3
+    return laws
 
 
 def _grouped(groups: Groups, names: Sequence[Hashable]) -> list[tuple[Hashable, ...]]:

@@ -22,6 +22,10 @@ export interface Net {
   springPart: Uint8Array;
   /** 1 along a free ring or rim, (m). */
   springRing: Uint8Array;
+  /** 0 stiffness, 1 constant force, 2 measured curve, 3 link of a rod, (m). */
+  law: Uint8Array;
+  /** Cross-section, 0 where unknown, (m) [m2]. */
+  area: Float32Array;
   /** (m) [N/m]. */
   stiffness: Float32Array;
   /** (m) [m]. */
@@ -70,6 +74,8 @@ export function applyNet(before: Net | null, header: NetHeader, arrays: Arrays):
     springLevel: bytes(springRuns, base?.springLevel, "spring_level"),
     springPart: bytes(springRuns, base?.springPart, "spring_part"),
     springRing: bytes(springRuns, base?.springRing, "spring_ring"),
+    law: bytes(springRuns, base?.law, "spring_law"),
+    area: floats(base?.area, "area"),
     stiffness: floats(base?.stiffness, "stiffness"),
     restLength: floats(base?.restLength, "rest_length"),
     constantForce: floats(base?.constantForce, "constant_force"),

@@ -2,7 +2,15 @@
 import type { Motion } from "./motion";
 import { groupOf, type Net } from "./net";
 
-export type QuantityId = "force" | "density" | "length" | "strain" | "level" | "type" | "part";
+export type QuantityId =
+  | "force"
+  | "density"
+  | "length"
+  | "strain"
+  | "stress"
+  | "level"
+  | "type"
+  | "part";
 
 /** A number of every spring. */
 export interface Quantity {
@@ -12,6 +20,8 @@ export interface Quantity {
   unit: string;
   formula: string;
   values(net: Net, motion: Motion): Float32Array;
+  /** Whether any spring of a net has it; without it all have. */
+  applies?(net: Net): boolean;
 }
 
 /** A kind that every spring is of. */
@@ -57,6 +67,7 @@ export const QUANTITIES: Quantity[] = [
     symbol: "ε",
     unit: "",
     formula: "ε = (L − r) / r",
+    applies: (net) => net.restLength.some((rest) => rest > 0),
     values: (net, motion) => {
       const lengths = lengthsOf(net, motion);
       return lengths.map((length, spring) => {
@@ -65,7 +76,22 @@ export const QUANTITIES: Quantity[] = [
       });
     },
   },
+  {
+    id: "stress",
+    name: "Stress",
+    symbol: "σ",
+    unit: "N/mm²",
+    formula: "σ = F / A",
+    applies: (net) => net.area.some((area) => area > 0),
+    values: (net, motion) =>
+      motion.forces.map((force, spring) => stressOf(force, net.area[spring])),
+  },
 ];
+
+/** Stress of a force in a cross-section [N/mm²]; NaN where the cross-section is unknown. */
+export function stressOf(force: number, area: number): number {
+  return area > 0 ? force / area / 1e6 : Number.NaN;
+}
 
 export const KINDS: Kind[] = [
   {

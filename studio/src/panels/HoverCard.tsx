@@ -1,8 +1,11 @@
 // What the pointer is on: a spring with its force, length, rest length and formula; a node; a cell.
 import { groupOf, springCells } from "../document/net";
-import { lengthsOf } from "../document/quantities";
+import { lengthsOf, stressOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
 import { useStudio } from "./use";
+
+/** Formulas by number of the law. */
+const LAWS = ["F = k (L − r)", "F = T", "F = EA(ε) ε", "F = k (L − r)"];
 
 const WIDTH = 236; // px
 const HEIGHT = 170; // px
@@ -38,11 +41,11 @@ export function SpringCard({ spring }: { spring: number }) {
   const constant = net.constantForce[spring];
   const ends = [net.nodes[net.ends[2 * spring]], net.nodes[net.ends[2 * spring + 1]]];
   const cells = [...groupOf(springCells(net), spring)].map((cell) => net.addresses[cell]);
-  const law = stiffness === 0 ? "F = T" : constant !== 0 ? "F = T + k (L − r)" : "F = k (L − r)";
+  const law = LAWS[net.law[spring]];
   return (
     <>
       <header>
-        <b>Spring</b>
+        <b>{net.law[spring] === 3 ? "Rod" : "Spring"}</b>
         <span>
           {ends[0]} – {ends[1]}
         </span>
@@ -53,6 +56,9 @@ export function SpringCard({ spring }: { spring: number }) {
       <Line name="Stiffness" symbol="k" value={stiffness} unit="N/m" />
       {constant !== 0 && <Line name="Constant force" symbol="T" value={constant} unit="N" />}
       {rest > 0 && <Line name="Strain" symbol="ε" value={(length - rest) / rest} unit="" />}
+      {net.area[spring] > 0 && (
+        <Line name="Stress" symbol="σ" value={stressOf(force, net.area[spring])} unit="N/mm²" />
+      )}
       <Line name="Force density" symbol="q" value={force / length} unit="N/m" />
       <footer>
         <code>{law}</code>

@@ -33,7 +33,10 @@ export function Legend() {
           label="Colour springs by"
           hidden
           value={colour.by}
-          options={[...QUANTITIES, ...KINDS].map(({ id, name }) => ({ value: id, name }))}
+          options={[
+            ...QUANTITIES.filter(({ id, applies }) => id === colour.by || !applies || applies(net)),
+            ...KINDS,
+          ].map(({ id, name }) => ({ value: id, name }))}
           onTake={(by: QuantityId) => changeColour({ by })}
         />
         {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
