@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nets import UP, assert_order, chain, solved
 from scipy.optimize import brentq
 
 import springform as sf
+from nets import UP, assert_order, chain, solved
 
 
 class Catenary:

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nets import assert_order, solved
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 import springform as sf
+from nets import assert_order, solved
 
 COUNTS = [8, 16, 32, 64, 128]
 # So stiff along its axis that the rod keeps its length to 1e-6 and better, and what rounding of

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nets import assert_order, solved, tube
 
 import springform as sf
+from nets import assert_order, solved, tube
 
 
 def acute_triangle(rng: np.random.Generator) -> np.ndarray:

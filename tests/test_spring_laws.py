@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from nets import UP, chain, solved
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
 import springform as sf
+from nets import UP, chain, solved
 
 POINTS = [[-0.02, -1.0], [0, 0], [0.05, 12.0], [0.1, 15.0], [0.2, 40.0], [0.25, 41.0]]
 exact = settings(max_examples=200, deadline=None, derandomize=True, database=None)
