@@ -14,6 +14,10 @@ PIP_VERSION := 26.3
 VENV := $(CURDIR)/.venv
 REQUIREMENTS := $(VENV)/requirements.stamp
 PACKAGE := $(VENV)/package.stamp
+STUDIO_MODULES := $(CURDIR)/studio/node_modules/.package-lock.json
+STUDIO_PAGE := $(CURDIR)/python/springform/studio/static/index.html
+STUDIO_SOURCES := $(shell find studio -name node_modules -prune -o -type f -print)
+MESSAGES := studio/src/protocol/messages.ts
 SCHEMA := docs/formats/design.schema.json
 DEMO := runs/demo
 
@@ -35,6 +39,11 @@ ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   BASE_PYTHON := $(shell command -v $(PYTHON))
   ifneq ($(shell $(or $(BASE_PYTHON),false) -c 'import sys; print(sys.version_info >= (3, 11))' 2> /dev/null),True)
     $(error springFORM needs Python 3.11 or newer, $(PYTHON) is not: name another with PYTHON=python3.12)
+  endif
+  ifneq ($(filter setup test lint format messages screenshots,$(MAKECMDGOALS)),)
+    ifneq ($(shell node -p 'process.versions.node.split(".")[0] >= 20' 2> /dev/null),true)
+      $(error the studio needs Node.js 20 or newer with npm: install them so that `node` is found, then try again)
+    endif
   endif
   ifneq ($(shell $(BASE_PYTHON) -c 'import ensurepip, venv; print(1)' 2> /dev/null),1)
     $(error $(PYTHON) can't make virtual environments: install the package python3-venv, or name another with PYTHON=python3.12)
@@ -61,26 +70,36 @@ demo: $(PACKAGE) # evolve the three-cylinder net and draw it
 	echo "The run is in $(DEMO), its pictures are in $(DEMO)/pictures."
 
 .PHONY: test
-test: calculix $(PACKAGE) # run the tests of the crates and of the Python package
+test: calculix chromium $(PACKAGE) $(STUDIO_PAGE) # run the tests of the crates, of the Python package and of the studio
 	@cargo test --locked --quiet
 	pytest -n 2
+	cd studio && npx playwright test --project studio
 
-# The finite element program that tests compare with; where it may, `make test` gets it by itself.
+# Programs that tests need besides Rust, Python and Node.js; where it may, `make test` gets them by itself.
 .PHONY: calculix
 calculix:
-	@if command -v ccx > /dev/null; then exit; fi
+	@$(call get,ccx,CalculiX,calculix-ccx)
+
+.PHONY: chromium
+chromium:
+	@$(call get,chromium,Chromium,chromium)
+
+# $(call get,COMMAND,NAME,DEBIAN PACKAGE)
+define get
+if command -v $(1) > /dev/null; then exit; fi
 	as_root=
 	[ "$$(id -u)" = 0 ] || as_root="sudo --non-interactive"
 	if ! { command -v apt-get && $$as_root true; } &> /dev/null; then
-		echo "the tests need CalculiX: install it (Debian: calculix-ccx) so that \`ccx\` is found, then try again" >&2
+		echo "the tests need $(2): install it (Debian: $(3)) so that \`$(1)\` is found, then try again" >&2
 		exit 1
 	fi
-	echo "installing CalculiX for the tests …"
+	echo "installing $(2) for the tests …"
 	$$as_root apt-get update -qq
-	$$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes --no-install-recommends calculix-ccx > /dev/null
+	$$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes --no-install-recommends $(3) > /dev/null
+endef
 
 .PHONY: lint
-lint: $(PACKAGE) # check layout, lints, types, layers and generated files
+lint: $(PACKAGE) $(STUDIO_MODULES) # check layout, lints, types, layers and generated files
 	@cargo fmt --all --check -- --files-with-diff
 	cargo clippy --locked --quiet --workspace --all-targets -- -D warnings
 	ruff check --quiet
@@ -88,6 +107,8 @@ lint: $(PACKAGE) # check layout, lints, types, layers and generated files
 	mypy
 	lint-imports
 	python -c "$$print_schema" | diff $(SCHEMA) - || { echo "make schema renews $(SCHEMA)" >&2; exit 1; }
+	$(print_messages) | diff $(MESSAGES) - || { echo "make messages renews $(MESSAGES)" >&2; exit 1; }
+	cd studio && npx biome check --error-on-warnings && npx tsc
 
 .PHONY: bench
 bench: $(PACKAGE) $(REFERENCE) $(BENCH_PACKAGES) # time springFORM beside CHOLMOD and other engines; CASES="growth threads"
@@ -103,19 +124,28 @@ guard: # count instructions here and at another commit: BASE=main, and fail abov
 	@$(BASE_PYTHON) bench/guard.py $(BASE) $(MOST)
 
 .PHONY: format
-format: $(REQUIREMENTS) # lay out Rust and Python code
+format: $(REQUIREMENTS) $(STUDIO_MODULES) # lay out Rust, Python and TypeScript code
 	@cargo fmt --all
 	ruff check --quiet --fix-only
 	ruff format --quiet
+	cd studio && npx biome check --write
 
 .PHONY: schema
 schema: $(PACKAGE) # write the schema of the design file
 	@python -c "$$print_schema" > $(SCHEMA)
 
+.PHONY: messages
+messages: $(PACKAGE) $(STUDIO_MODULES) # write the types of the messages between engine and studio
+	@$(print_messages) > $(MESSAGES)
+
 .PHONY: pictures
 pictures: demo # make the pictures of the README
 	@mkdir -p docs/pictures
 	cp $(DEMO)/pictures/net.png docs/pictures/three-cylinders-evolved.png
+
+.PHONY: screenshots
+screenshots: chromium $(PACKAGE) $(STUDIO_PAGE) # take the pictures of the studio
+	@cd studio && npx playwright test --project pictures
 
 .PHONY: lock
 lock: # renew Cargo.lock and requirements.lock
@@ -128,11 +158,12 @@ lock: # renew Cargo.lock and requirements.lock
 	rm -r build/lock
 
 .PHONY: setup
-setup: $(PACKAGE) # build everything into .venv, as the other commands do by themselves
+setup: $(PACKAGE) $(STUDIO_PAGE) # build everything into .venv, as the other commands do by themselves
 
 .PHONY: clean
 clean: # remove what was built; runs stay
-	@rm -rf .venv target build dist .hypothesis .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	@rm -rf studio/node_modules studio/test-results python/springform/studio/static
+	rm -rf .venv target build dist .hypothesis .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 	find python tests bench -name __pycache__ -prune -exec rm -r {} +
 	rm -f python/springform/_core*.so
 
@@ -169,6 +200,25 @@ $(BENCH_PACKAGES): $(REQUIREMENTS) $(REFERENCE) bench/requirements.txt bench/req
 	        || echo "bench: $$package can't be had here: its figures are left out" >&2
 	done
 	touch $@
+
+$(STUDIO_MODULES): studio/package.json studio/package-lock.json studio/.npmrc
+	@cd studio && npm ci --silent
+	touch $@
+
+$(STUDIO_PAGE): $(STUDIO_MODULES) $(STUDIO_SOURCES)
+	@cd studio && npx vite build --logLevel warn
+	touch $@
+
+print_messages = python -c "$$print_message_schema" \
+	| studio/node_modules/.bin/json2ts --ignoreMinAndMaxItems --bannerComment "$$messages_banner"
+
+define print_message_schema
+import json
+from springform.studio import messages
+print(json.dumps(messages.schema()))
+endef
+export print_message_schema
+export messages_banner := // Messages between engine and window, generated from python/springform/studio/messages.py by `make messages`.
 
 define print_schema
 from springform import canonical_text, design_file

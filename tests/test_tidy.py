@@ -13,7 +13,14 @@ from springform.canonical_text import json_text
 from springform.design_file import json_schema
 
 ROOT = Path(__file__).parent.parent
-COMMENTS = {".rs": ("//! ", "// "), ".py": ('"""',), ".pyi": ('"""',), ".css": ("/* ",)}
+COMMENTS = {
+    ".rs": ("//! ", "// "),
+    ".py": ('"""',),
+    ".pyi": ('"""',),
+    ".css": ("/* ",),
+    ".ts": ("// ",),
+    ".tsx": ("// ",),
+}
 HASHED = {".toml", ".sh", ".lock", ".cfg"}
 WRITTEN_BY_TOOLS = {"Cargo.lock"}
 

@@ -31,6 +31,9 @@ from .run_format import (
     read_settings,
 )
 
+STRATEGY = frozenset({"insertions", "switches", "toggles", "weighting"})
+"""Parameters that individuals may have of their own."""
+
 Table = dict[str, NDArray[Any]]
 """Columns by name, one row an individual in order of generation and index; undefined is NaN."""
 
@@ -51,7 +54,7 @@ class Run:
         self.generations = complete_generations(lines, parts)
         self.lines = [line for line in lines if line.generation <= self.generations]
         self._parts = [part for part in parts if part[1] <= self.generations]
-        self.parameters = self._current_parameters()
+        self.parameters = self.parameters_after(self.generations)
 
     @property
     def parents(self) -> list[int | None]:
@@ -173,11 +176,14 @@ class Run:
         """Return the algorithm as it stood after a generation."""
         self._check_generation(generation, first=0)
         line = self._chosen[generation - 1] if generation else None
+        # Amounts and weighting that were changed here hold in place of the parent's own.
+        changed = self.changed_after(generation) & STRATEGY
+        own = line.strategy if line and not changed else None
         return start_evolution(
             self.parent(generation),
-            self.parameters,
+            self.parameters_after(generation),
             threads=threads,
-            strategy=line.strategy if line else None,
+            strategy=own,
             resumed=(generation, self._settings.start, line.suf if line else None),
         )
 
@@ -194,10 +200,25 @@ class Run:
             problem = f"does not lead to individual {individual} of generation {generation}"
             raise broken(self.folder / "journal.jsonl", problem)
 
-    def _current_parameters(self) -> Parameters:
+    @property
+    def generation_lines(self) -> list[GenerationLine]:
+        """Lines of the journal that say what each generation chose."""
+        return self._chosen
+
+    def changed_after(self, generation: int) -> set[str]:
+        """Return the names of the parameters that were changed after a generation."""
+        return {
+            name
+            for line in self.lines
+            if isinstance(line, ChangeLine) and line.generation == generation
+            for name in line.parameters
+        }
+
+    def parameters_after(self, generation: int) -> Parameters:
+        """Return the parameters of the generation that follows one."""
         values = dict(self._settings.parameters)
         for line in self.lines:
-            if isinstance(line, ChangeLine):
+            if isinstance(line, ChangeLine) and line.generation <= generation:
                 values |= line.parameters
         try:
             return checked_parameters(values, self.design.file.method)

@@ -10,7 +10,14 @@ import typer
 from .. import _core
 from ..errors import SpringformError, printable
 from ..files import explain
-from . import bench_commands, design_commands, equalise_command, graft_commands, run_commands
+from . import (
+    bench_commands,
+    design_commands,
+    equalise_command,
+    graft_commands,
+    run_commands,
+    studio_command,
+)
 from .terminal import BAD_INPUT, INTERRUPTED, StoppedError, say
 
 __all__ = ["main"]
@@ -72,3 +79,4 @@ app.add_typer(equalise_command.commands)
 app.add_typer(run_commands.commands)
 app.add_typer(graft_commands.commands)
 app.add_typer(bench_commands.commands)
+app.add_typer(studio_command.commands)

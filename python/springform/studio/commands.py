@@ -1,0 +1,247 @@
+"""What requests do to a document: from a gesture to the action that is journalled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from .. import design_file
+from ..arrays import Floats
+from ..design import Design
+from ..errors import DesignError, InputError
+from ..evolution import seek
+from .changes import Action, ForestChange, ValueChange, apply, value_at, values_of
+from .messages import EditCells, EditSpring, FixNode, MoveAnchor, SeekStress, SetFramework, SetValue
+
+
+def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Action, list[str]]:
+    """Return the action that a request asks for, and the cells to show afterwards.
+
+    `positions` are those of the nodes now, (n, 3) [m]. Raises `InputError`: it does not fit.
+    """
+    match request:
+        case EditCells():
+            return edit_cells(design, request)
+        case SeekStress():
+            return seek_stress(design, request)
+        case EditSpring():
+            action = edit_spring(design, request)
+        case MoveAnchor():
+            action = move_anchor(design, request)
+        case FixNode():
+            action = fix_node(design, request, positions)
+        case SetValue():
+            action = set_value(design, request)
+        case SetFramework():
+            action = set_framework(design, request)
+        case _:
+            raise InputError("is no request that changes a design", key="type")
+    return action, []
+
+
+def edit_cells(design: Design, request: EditCells) -> tuple[Action, list[str]]:
+    """Return the action on cells, and the cells to show afterwards."""
+    cells = list(dict.fromkeys(request.cells))
+    match request.what:
+        case "subdivide":
+            return _subdivide(design, cells, request.kind)
+        case "off":
+            parents = list(dict.fromkeys(_parent(cell) for cell in cells))
+            return _toggle(parents, "off"), parents
+        case "on":
+            return _toggle(cells, "on"), _children(cells)
+        case "retype":
+            return _retype(design, cells, request.kind), cells
+        case "turn":
+            return _turn(design, cells), cells
+
+
+def edit_spring(design: Design, request: EditSpring) -> Action:
+    """Return the action that cuts or adds a spring."""
+    first, second = request.nodes
+    _, added, cut = design.setting.notation(design.forest, "")
+    pairs = {f"{first} {second}", f"{second} {first}"}
+    if request.what == "cut":
+        word = "unadd" if pairs & set(added) else "cut"
+    else:
+        word = "uncut" if pairs & set(cut) else "add"
+    label = "Cut a spring" if request.what == "cut" else "Add a spring"
+    return _forest(label, [f"{first} {second} {word}"])
+
+
+def move_anchor(design: Design, request: MoveAnchor) -> Action:
+    """Return the action that holds an anchor elsewhere."""
+    try:
+        number = design.anchor_names.index(request.anchor)
+    except ValueError:
+        raise DesignError("there is no anchor of this name", key=request.anchor) from None
+    path: list[str | int] = ["framework", "anchors", number, "position"]
+    return _value(design, f"Move anchor {request.anchor}", path, request.position)
+
+
+def fix_node(design: Design, request: FixNode, positions: Floats) -> Action:
+    """Return the action that makes a node an anchor where it is now, or lets an anchor go."""
+    path: list[str | int] = ["framework", "anchors"]
+    anchors: list[dict[str, Any]] = value_at(values_of(design), path)
+    # Names that stand for places in the list must not move to other anchors.
+    named = [
+        anchor | {"name": name} for anchor, name in zip(anchors, design.anchor_names, strict=True)
+    ]
+    row = _row(design, request.node)
+    held = design.anchors.tolist()
+    if request.fixed:
+        if row in held:
+            raise InputError("is an anchor already", key=request.node)
+        if not request.node.startswith("v"):
+            problem = (
+                "lies inside a cell or on an edge; only corners of top-level cells can be held"
+            )
+            raise InputError(problem, key=request.node)
+        name = _free_name(design)
+        place = [round(value, 6) for value in positions[row].tolist()]
+        vertex = int(request.node[1:])
+        new = {"name": name, "vertex": vertex, "position": place}
+        return _value(design, f"Hold a node as anchor {name}", path, [*named, new])
+    if row not in held:
+        raise InputError("is no anchor", key=request.node)
+    number = held.index(row)
+    label = f"Let go anchor {design.anchor_names[number]}"
+    return _value(design, label, path, named[:number] + named[number + 1 :])
+
+
+def seek_stress(design: Design, request: SeekStress) -> tuple[Action, list[str]]:
+    """Return the action that subdivides where the force is, and the last cells that it made."""
+    edits: list[str] = []
+    steps = 0
+    for step in seek(design, steps=request.steps, type=request.kind):
+        edits += step.edits
+        steps, last = step.step, step.edits
+    if not steps:
+        raise InputError("no cell of this design can be subdivided further")
+    label = f"Seek stress, {steps} step{'s' if steps > 1 else ''}"
+    divided = [edit.split(" ")[0] for edit in last if edit.split(" ")[1] == "subdivide"]
+    return _forest(label, edits), _children(divided[:1])
+
+
+def set_value(design: Design, request: SetValue) -> Action:
+    """Return the action that changes one value of the design file."""
+    if not request.path:
+        raise InputError("must name a value", key="path")
+    return _value(design, request.label, request.path, request.value)
+
+
+def set_framework(design: Design, request: SetFramework) -> Action:
+    """Return the action that changes the framework, with the cells that fit it."""
+    values = values_of(design)
+    label = "Change the framework"
+    framework = ValueChange(
+        path=["framework"], before=values["framework"], after=dict(request.framework)
+    )
+    # What the form left out has its default, and stands in the file as such.
+    wanted = values | {"framework": framework.after}
+    empty = {"type": values["forest"]["type"], "cells": {}}
+    bare: dict[str, Any] = {"added": [], "cut": []}
+    try:
+        after = values_of(Design(design_file.from_data(wanted)))
+    except DesignError:
+        wanted |= {"forest": empty, "overrides": bare}
+        after = values_of(Design(design_file.from_data(wanted)))
+    whole = ValueChange(path=[], before=values, after=after)
+    return Action(label=label, changes=[whole])
+
+
+def whole(design: Design, other: Design, label: str) -> Action:
+    """Return the action that puts another design in place of a design."""
+    change = ValueChange(path=[], before=values_of(design), after=values_of(other.closed))
+    return Action(label=label, changes=[change])
+
+
+# --- cells ----------------------------------------------------------------------------------------
+
+
+def _subdivide(design: Design, cells: list[str], kind: str | None) -> tuple[Action, list[str]]:
+    edits = []
+    for cell in cells:
+        content, _, stored = design.setting.cell(design.forest, cell)
+        if stored:
+            edits.append(f"{cell} on")
+        else:
+            child = content if kind is None else kind
+            edits.append(f"{cell} subdivide {child} {child} {child} {child}")
+    return _forest(_counted("Subdivide", cells), edits), _children(cells)
+
+
+def _toggle(cells: list[str], state: str) -> Action:
+    label = _counted("Merge" if state == "off" else "Bring back", cells)
+    return _forest(label, [f"{cell} {state}" for cell in cells])
+
+
+def _retype(design: Design, cells: list[str], kind: str | None) -> Action:
+    if kind is None:
+        raise InputError("a new type needs its name", key="kind")
+    kind = design.setting.cell_type(kind)
+    edits = []
+    for cell in cells:
+        content, _, _ = design.setting.cell(design.forest, cell)
+        if content != kind:
+            edits.append(f"{cell} retype {content} {kind}")
+    if not edits:
+        raise InputError(f"the cells are of type {kind} already")
+    return _forest(f"{_counted('Give', cells)} type {kind}", edits)
+
+
+def _turn(design: Design, cells: list[str]) -> Action:
+    edits = []
+    for cell in cells:
+        content, _, _ = design.setting.cell(design.forest, cell)
+        kind, _, turn = content.partition("@")
+        turned = (int(turn or 0) + 1) % 4
+        edits.append(f"{cell} retype {content} {kind}{f'@{turned}' if turned else ''}")
+    return _forest(_counted("Turn", cells), edits)
+
+
+def _parent(cell: str) -> str:
+    if "." not in cell:
+        raise InputError("is not part of a subdivided cell", key=cell)
+    return cell.rsplit(".", 1)[0]
+
+
+def _children(cells: list[str]) -> list[str]:
+    return [f"{cell}.{child}" for cell in cells for child in range(4)]
+
+
+def _counted(verb: str, cells: list[str]) -> str:
+    return f"{verb} cell {cells[0]}" if len(cells) == 1 else f"{verb} {len(cells)} cells"
+
+
+# --- values ---------------------------------------------------------------------------------------
+
+
+def _forest(label: str, edits: list[str]) -> Action:
+    return Action(label=label, changes=[ForestChange(edits=edits)])
+
+
+def _value(design: Design, label: str, path: list[str | int], after: Any) -> Action:
+    before = value_at(values_of(design), path)
+    change = ValueChange(path=path, before=before, after=after)
+    action = Action(label=label, changes=[change])
+    # As the file holds it, so that the change can be checked when it is undone.
+    kept = value_at(values_of(apply(design, action)), path)
+    if kept == before:
+        raise InputError("nothing would change", key=".".join(str(step) for step in path))
+    return Action(label=label, changes=[change.model_copy(update={"after": kept})])
+
+
+def _row(design: Design, node: str) -> int:
+    try:
+        return design.nodes.index(node)
+    except ValueError:
+        raise DesignError("is no node of the net", key=node) from None
+
+
+def _free_name(design: Design) -> str:
+    number = len(design.anchor_names) + 1
+    while f"A{number}" in design.anchor_names:
+        number += 1
+    return f"A{number}"

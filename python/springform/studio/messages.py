@@ -1,0 +1,505 @@
+"""Every message between the engine and a window, declared once; TypeScript is generated from here.
+
+Windows send requests as JSON, one a text frame. The engine answers each that has a number with a
+`Reply`, tells events as JSON, and sends nets and motion as binary frames (`frames`). Positions and
+lengths in m, forces in N.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
+
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
+Key = Annotated[str, Field(max_length=200)]
+Address = Annotated[str, Field(max_length=200)]
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+        # Whoever reads a message finds every field in it.
+        json_schema_serialization_defaults_required=True,
+    )
+
+
+# --- requests: from a window to the engine --------------------------------------------------------
+
+
+class EditCells(_Message):
+    """Subdivide, switch off, switch on or retype cells."""
+
+    type: Literal["edit_cells"] = "edit_cells"
+    id: int
+    what: Literal["subdivide", "off", "on", "retype", "turn"]
+    cells: Annotated[list[Address], Field(min_length=1, max_length=100_000)]
+    kind: Annotated[str, Field(max_length=100)] | None = None
+    """Cell type of the children, or the new type."""
+
+
+class EditSpring(_Message):
+    """Cut the spring between two nodes, or add one."""
+
+    type: Literal["edit_spring"] = "edit_spring"
+    id: int
+    what: Literal["cut", "add"]
+    nodes: Annotated[list[Key], Field(min_length=2, max_length=2)]
+
+
+class MoveAnchor(_Message):
+    """Hold an anchor somewhere else."""
+
+    type: Literal["move_anchor"] = "move_anchor"
+    id: int
+    anchor: Key
+    position: Vector
+
+
+class FixNode(_Message):
+    """Make a base vertex an anchor where it is now, or let an anchor go."""
+
+    type: Literal["fix_node"] = "fix_node"
+    id: int
+    node: Key
+    fixed: bool
+
+
+class SeekStress(_Message):
+    """Subdivide the cell of highest inner force, a number of times."""
+
+    type: Literal["seek_stress"] = "seek_stress"
+    id: int
+    steps: Annotated[int, Field(ge=1, le=1000)]
+    kind: Annotated[str, Field(max_length=100)]
+
+
+class SetValue(_Message):
+    """Change a value of the design file."""
+
+    type: Literal["set_value"] = "set_value"
+    id: int
+    label: Annotated[str, Field(max_length=200)]
+    path: Annotated[list[str | int], Field(max_length=20)]
+    value: Any
+
+
+class SetFramework(_Message):
+    """Change the framework; cells that no longer fit start anew."""
+
+    type: Literal["set_framework"] = "set_framework"
+    id: int
+    framework: dict[str, Any]
+
+
+class Undo(_Message):
+    """Undo the last action, or redo the one that was undone last."""
+
+    type: Literal["undo"] = "undo"
+    id: int
+    redo: bool
+
+
+class Travel(_Message):
+    """Undo or redo until a number of actions is done."""
+
+    type: Literal["travel"] = "travel"
+    id: int
+    position: Annotated[int, Field(ge=0)]
+
+
+class Save(_Message):
+    """Write the design file; a path makes it the document's file."""
+
+    type: Literal["save"] = "save"
+    id: int
+    path: Annotated[str, Field(max_length=4000)] | None = None
+    replace: bool = False
+    """Whether another file that exists is replaced."""
+
+
+class Move(_Message):
+    """Let the net move, stop it, make one step, or put it back to where it was drawn."""
+
+    type: Literal["move"] = "move"
+    id: int
+    what: Literal["run", "pause", "step", "reset"]
+
+
+class Evolve(_Message):
+    """Start a run from the design, with parameters; what is left out has its default."""
+
+    type: Literal["evolve"] = "evolve"
+    id: int
+    parameters: dict[str, Any]
+
+
+class SteerRun(_Message):
+    """Pause a run, let it go on, end it, or change parameters from the next generation on."""
+
+    type: Literal["steer_run"] = "steer_run"
+    id: int
+    what: Literal["pause", "continue", "stop", "change"]
+    parameters: dict[str, Any] = {}
+
+
+class Look(_Message):
+    """Show a parent or an individual of the run instead of the design, or the design again."""
+
+    type: Literal["look"] = "look"
+    id: int
+    generation: Annotated[int, Field(ge=0)] | None
+    """None: the design."""
+    individual: Annotated[int, Field(ge=0)] | None
+    """None: the parent that the generation chose."""
+
+
+class Follow(_Message):
+    """Show the parent of the newest generation for as long as the run goes on, or no longer."""
+
+    type: Literal["follow"] = "follow"
+    id: int
+    on: bool
+
+
+class Reinstate(_Message):
+    """Make what is looked at the design."""
+
+    type: Literal["reinstate"] = "reinstate"
+    id: int
+
+
+class Hold(_Message):
+    """Hold a node somewhere for as long as it is dragged."""
+
+    type: Literal["hold"] = "hold"
+    node: Key
+    position: Vector
+
+
+class Release(_Message):
+    """Let the dragged node go."""
+
+    type: Literal["release"] = "release"
+
+
+class Received(_Message):
+    """A frame of motion was drawn; the engine may send another."""
+
+    type: Literal["received"] = "received"
+
+
+Request = Annotated[
+    EditCells
+    | EditSpring
+    | MoveAnchor
+    | FixNode
+    | SeekStress
+    | SetValue
+    | SetFramework
+    | Undo
+    | Travel
+    | Save
+    | Move
+    | Evolve
+    | SteerRun
+    | Look
+    | Follow
+    | Reinstate
+    | Hold
+    | Release
+    | Received,
+    Field(discriminator="type"),
+]
+REQUEST: TypeAdapter[Request] = TypeAdapter(Request)
+
+
+# --- events: from the engine to windows -----------------------------------------------------------
+
+
+class Figures(_Message):
+    """Measures of the net at equilibrium."""
+
+    springs: int
+    nodes: int
+    cells: int
+    force_differential: float | None
+    force_min: float
+    force_max: float
+    force_mean: float
+    total_length: float
+    area: float
+    shortest_spring: float
+    converged: bool
+    reason: str
+
+
+class HistoryLine(_Message):
+    """One action of the history."""
+
+    label: str
+    number: int
+    """Actions done once this one is, from 1."""
+
+
+class AnchorState(_Message):
+    """An anchor as the design file holds it."""
+
+    name: str
+    node: Key
+    position: Vector
+
+
+class CellTypeChoice(_Message):
+    """A cell type that the method allows."""
+
+    word: str
+    name: str
+
+
+class Looked(_Message):
+    """A parent or an individual that is shown instead of the design."""
+
+    generation: int
+    individual: int | None
+
+
+class DocumentState(_Message):
+    """The document as it is now."""
+
+    type: Literal["document"] = "document"
+    document: str
+    name: str
+    file: str | None
+    """The design file that saving writes."""
+    saved: bool
+    """Whether that file holds the document as it is now."""
+    method: str
+    revision: int
+    """Revision of the net."""
+    position: int
+    """Actions done."""
+    length: int
+    """Actions that are done or can be redone."""
+    history: list[HistoryLine]
+    """The actions round the position, in order."""
+    figures: Figures
+    before: Figures | None
+    """Figures before the last action; None at the start."""
+    anchors: list[AnchorState]
+    cell_types: list[CellTypeChoice]
+    framework: dict[str, Any]
+    stiffness: float
+    ring_factor: float
+    looking: Looked | None
+    """What is shown instead of the design; figures and net are of that."""
+
+
+class GenerationRow(_Message):
+    """What a generation gave: its parent now, and the force differentials of its individuals."""
+
+    generation: int
+    springs: int
+    force_differential: float | None
+    suf: float | None
+    winner: int | None
+    """Individual that became parent; None: the parent stayed."""
+    least: float | None
+    low: float | None
+    """First quartile."""
+    median: float | None
+    high: float | None
+    """Third quartile."""
+    changed: bool
+    """Parameters were changed after it."""
+
+
+class RunState(_Message):
+    """The run of the document."""
+
+    type: Literal["run"] = "run"
+    status: Literal["none", "running", "paused", "ended", "failed"]
+    reason: str
+    folder: str
+    following: bool
+    parameters: dict[str, Any]
+    generations: int
+    """Generations made."""
+    first: int
+    """Generation of the first row; earlier ones are as they were told before."""
+    rows: list[GenerationRow]
+
+
+class Welcome(_Message):
+    """First message to a window."""
+
+    type: Literal["welcome"] = "welcome"
+    protocol: str
+    """Hash of these declarations; a window of another protocol must be loaded anew."""
+    version: str
+
+
+class Reply(_Message):
+    """Answer to a request."""
+
+    type: Literal["reply"] = "reply"
+    id: int
+    problem: str | None = None
+    """What is wrong and what to do; None: it was done."""
+    cells: list[Address] = []
+    """Cells that the action made or changed."""
+
+
+class Problem(_Message):
+    """Something went wrong that no request asked for."""
+
+    type: Literal["problem"] = "problem"
+    message: str
+
+
+Event = Annotated[DocumentState | RunState | Welcome | Reply | Problem, Field(discriminator="type")]
+
+
+# --- headers of binary frames ---------------------------------------------------------------------
+
+
+class ArrayHeader(_Message):
+    """One array of a frame."""
+
+    name: str
+    type: Literal["float32", "int32", "uint8"]
+    length: int
+
+
+class NetHeader(_Message):
+    """A net, as what differs from an earlier one."""
+
+    frame: Literal["net"] = "net"
+    revision: int
+    base: int | None
+    """Revision that runs refer to; None: there are no runs."""
+    parts: list[str]
+    anchor_names: list[str]
+    node_keys: list[Key]
+    """Of new nodes."""
+    addresses: list[Address]
+    """Of new cells."""
+    types: list[str]
+    """Of new cells."""
+    arrays: list[ArrayHeader]
+
+
+class MotionHeader(_Message):
+    """Where the net is, and what its springs carry."""
+
+    frame: Literal["motion"] = "motion"
+    revision: int
+    """Revision of the net that the arrays belong to."""
+    steps: int
+    """Steps made since the net was last disturbed."""
+    running: bool
+    settled: bool
+    """Nothing will move until something changes."""
+    converged: bool
+    residual: float | None
+    """Largest force out of balance over the mean spring force; None if it is undefined."""
+    reason: str
+    held: list[int]
+    """Nodes that are dragged."""
+    arrays: list[ArrayHeader]
+
+
+class TableHeader(_Message):
+    """Springs and force differentials of all individuals from a generation on."""
+
+    frame: Literal["table"] = "table"
+    first: int
+    """Generation of the first individual."""
+    population: int
+    arrays: list[ArrayHeader]
+
+
+Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="frame")]
+
+
+# --- what is fetched ------------------------------------------------------------------------------
+
+
+class SceneEntry(_Message):
+    """A packaged scene."""
+
+    name: str
+    description: str
+
+
+class DocumentEntry(_Message):
+    """A document that was worked on before."""
+
+    id: str
+    name: str
+    file: str | None
+    changed: float
+    """Seconds since 1970."""
+    open: bool
+
+
+class Shelf(_Message):
+    """What can be opened."""
+
+    scenes: list[SceneEntry]
+    documents: list[DocumentEntry]
+
+
+class Opening(_Message):
+    """Ask for a new document from a scene or a design file."""
+
+    source: Annotated[str, Field(min_length=1, max_length=4000)]
+
+
+class Opened(_Message):
+    """The document that was opened."""
+
+    id: str
+
+
+class Refusal(_Message):
+    """Why something that was fetched is refused."""
+
+    problem: str
+
+
+class Protocol(_Message):
+    """All of them, for the generator."""
+
+    request: Request
+    event: Event
+    frame: Frame
+    shelf: Shelf
+    opening: Opening
+    opened: Opened
+    refusal: Refusal
+
+
+class _PlainSchema(GenerateJsonSchema):
+    """Without titles of fields, or every field would be a type of its own in TypeScript."""
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of all messages."""
+    return Protocol.model_json_schema(schema_generator=_PlainSchema, mode="serialization")
+
+
+def protocol() -> str:
+    """Return a hash of all messages."""
+    return hashlib.sha256(json.dumps(schema(), sort_keys=True).encode()).hexdigest()[:16]

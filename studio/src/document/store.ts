@@ -1,0 +1,233 @@
+// The window's mirror of the session: document, net and motion as the engine tells them, and what is looked at.
+import { createStore } from "zustand/vanilla";
+import { type Asking, Connection, type Telling } from "../protocol/connection";
+import type { Frame } from "../protocol/frames";
+import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
+import type { ColourChoice } from "./colouring";
+import { type Motion, motionOf } from "./motion";
+import { applyNet, type Net } from "./net";
+import type { Theme } from "./palettes";
+import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
+import { NOTHING, type Selection, stillThere } from "./selection";
+
+export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
+export type ToolId = "pull" | "subdivide" | "cut" | "add";
+
+/** How the net is shown. */
+export interface View {
+  colour: ColourChoice;
+  /** Whether springs are drawn thicker the more force they carry. */
+  thickness: boolean;
+  cells: boolean;
+  nodes: boolean;
+  anchors: boolean;
+  reactions: boolean;
+}
+
+/** What the pointer is over, and where on the page [px]. */
+export interface Hover {
+  kind: "node" | "spring" | "cell";
+  row: number;
+  x: number;
+  y: number;
+}
+
+export interface Notice {
+  id: number;
+  text: string;
+}
+
+export interface State {
+  line: Line;
+  problem: string;
+  document: DocumentState | null;
+  net: Net | null;
+  motion: Motion | null;
+  run: Run | null;
+  individuals: Individuals;
+  /** Whether the individuals of the run are shown under the net. */
+  gallery: boolean;
+  selection: Selection;
+  hover: Hover | null;
+  tool: ToolId;
+  view: View;
+  theme: Theme;
+  /** Label of what the engine is busy with; empty if it answers at once. */
+  busy: string;
+  /** The last problem, for a toast. */
+  notice: Notice | null;
+}
+
+const VIEW: View = {
+  colour: { by: "force", palette: "plasma", mode: "full", logarithmic: false, fixed: [0, 1] },
+  thickness: false,
+  cells: false,
+  nodes: false,
+  anchors: true,
+  reactions: false,
+};
+
+const KEPT = "springform view";
+
+function keptView(): Pick<State, "view" | "theme"> {
+  const dark = !matchMedia("(prefers-color-scheme: light)").matches;
+  const theme: Theme = dark ? "dark" : "light";
+  try {
+    const kept = JSON.parse(localStorage.getItem(KEPT) ?? "{}") as Partial<
+      Pick<State, "view" | "theme">
+    >;
+    return {
+      theme: kept.theme ?? theme,
+      view: { ...VIEW, ...kept.view, colour: { ...VIEW.colour, ...kept.view?.colour } },
+    };
+  } catch {
+    return { theme, view: VIEW };
+  }
+}
+
+export const store = createStore<State>()(() => ({
+  line: "closed",
+  problem: "",
+  document: null,
+  net: null,
+  motion: null,
+  run: null,
+  individuals: NO_INDIVIDUALS,
+  gallery: false,
+  selection: NOTHING,
+  hover: null,
+  tool: "pull",
+  busy: "",
+  notice: null,
+  ...keptView(),
+}));
+
+store.subscribe(({ view, theme }, before) => {
+  if (view !== before.view || theme !== before.theme)
+    localStorage.setItem(KEPT, JSON.stringify({ view, theme }));
+});
+
+let connection: Connection | null = null;
+let notices = 0;
+
+/** Opens a document in this window; an empty id closes the one that is open. */
+export function openDocument(id: string): void {
+  connection?.close();
+  connection = null;
+  const closed = {
+    document: null,
+    net: null,
+    motion: null,
+    run: null,
+    individuals: NO_INDIVIDUALS,
+    selection: NOTHING,
+    hover: null,
+    busy: "",
+  };
+  store.setState({ ...closed, line: id ? "connecting" : "closed", problem: "" });
+  if (!id) return;
+  connection = new Connection(id, {
+    event: takeEvent,
+    frame: takeFrame,
+    line: (line, problem = "") => {
+      // After the line was lost the engine sends the whole net anew.
+      store.setState(line === "lost" ? { line, problem, hover: null } : { line, problem });
+    },
+  });
+}
+
+const BUSY_AFTER = 200; // ms
+
+/**
+ * Asks the engine to do something; what it made is selected. Failures become a notice.
+ * Resolves to the reply, or to null if it failed.
+ */
+export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
+  const timer = setTimeout(() => store.setState({ busy: label }), BUSY_AFTER);
+  try {
+    if (!connection) throw new Error("no document is open");
+    const reply = await connection.ask(request);
+    if (reply.cells.length) store.setState({ selection: { kind: "cells", keys: reply.cells } });
+    return reply;
+  } catch (error) {
+    notify((error as Error).message);
+    return null;
+  } finally {
+    clearTimeout(timer);
+    store.setState({ busy: "" });
+  }
+}
+
+/** Tells the engine something that it does not answer. */
+export function tell(request: Telling): void {
+  connection?.tell(request);
+}
+
+/** Shows a problem to the person. */
+export function notify(text: string): void {
+  store.setState({ notice: { id: ++notices, text } });
+}
+
+/** Changes how the net is shown. */
+export function changeView(change: Partial<View>): void {
+  store.setState(({ view }) => ({ view: { ...view, ...change } }));
+}
+
+/** Changes how springs are coloured. */
+export function changeColour(change: Partial<ColourChoice>): void {
+  store.setState(({ view }) => ({ view: { ...view, colour: { ...view.colour, ...change } } }));
+}
+
+export function select(selection: Selection): void {
+  store.setState({ selection });
+}
+
+function takeEvent(event: Protocol["event"]): void {
+  if (event.type === "document") store.setState({ document: event });
+  if (event.type === "problem") notify(event.message);
+  if (event.type === "run") takeRun(event);
+}
+
+const TABLE_EVERY = 500; // ms
+let tableTimer = 0;
+
+function takeRun(state: RunState): void {
+  const before = store.getState().run;
+  const other = before?.state.folder !== state.folder;
+  store.setState({
+    run: withMessage(before, state),
+    ...(other ? { individuals: NO_INDIVIDUALS } : {}),
+  });
+  if (tableTimer || state.generations === 0) return;
+  tableTimer = window.setTimeout(async () => {
+    tableTimer = 0;
+    const { run, individuals } = store.getState();
+    const known = individuals.springs.length / individuals.population;
+    if (!run || known >= run.state.generations) return;
+    try {
+      const more = await moreIndividuals(individuals);
+      if (store.getState().run?.state.folder === run.state.folder)
+        store.setState({ individuals: more });
+    } catch (error) {
+      notify((error as Error).message);
+    }
+  }, TABLE_EVERY);
+}
+
+function takeFrame({ header, arrays }: Frame): void {
+  const { net, selection } = store.getState();
+  if (header.frame === "net") {
+    const next = applyNet(net, header, arrays);
+    // Until the first frame of motion comes, nothing is known of the new net's positions.
+    store.setState({
+      net: next,
+      motion: null,
+      hover: null,
+      selection: stillThere(selection, next),
+    });
+    return;
+  }
+  if (header.frame !== "motion") return;
+  tell({ type: "received" });
+  if (net && header.revision === net.revision) store.setState({ motion: motionOf(header, arrays) });
+}

@@ -1,0 +1,162 @@
+// The page: the start, or a document with its tools, its net and its panels.
+import { LoaderCircle } from "lucide-react";
+import { Tooltip } from "radix-ui";
+import { useCallback, useEffect, useMemo, useState } from "react";
+import { Toaster, toast } from "sonner";
+import { openDocument, store } from "../document/store";
+import { documentInAddress } from "../protocol/address";
+import { commandOfKey, type Dialogs } from "./commands";
+import { DialogsContext, useDialogs } from "./dialogs";
+import { LookingBanner } from "./EvolvePanel";
+import { Gallery } from "./Gallery";
+import { Inspector } from "./Inspector";
+import { type OpenDialog, Overlays } from "./Overlays";
+import { StartPage } from "./StartPage";
+import { StatusBar } from "./StatusBar";
+import { ToolHelp, ToolRail } from "./ToolRail";
+import { TopBar } from "./TopBar";
+import { type Stage, StageContext, useStudio } from "./use";
+import { ViewportPane } from "./ViewportPane";
+
+export function App() {
+  const [stage, setStage] = useState<Stage | null>(null);
+  const [dialog, setDialog] = useState<OpenDialog>(null);
+  const dialogs = useMemo<Dialogs>(
+    () => ({
+      open: (name) => {
+        if (name === "start") location.hash = "";
+        else setDialog(name);
+      },
+    }),
+    [],
+  );
+  const id = useDocumentInAddress();
+  const theme = useStudio((state) => state.theme);
+  useEffect(() => {
+    document.documentElement.dataset.theme = theme;
+  }, [theme]);
+  useNotices();
+  useKeys(stage, dialogs, dialog !== null, id !== "");
+  const close = useCallback(() => setDialog(null), []);
+  return (
+    <Tooltip.Provider delayDuration={350} skipDelayDuration={150}>
+      <DialogsContext value={dialogs}>
+        <StageContext value={stage}>
+          {id ? <Workbench key={id} onStage={setStage} /> : <Front />}
+          <Overlays open={dialog} onClose={close} />
+          <Toaster theme={theme} position="bottom-left" offset={{ left: 64, bottom: 52 }} />
+        </StageContext>
+      </DialogsContext>
+    </Tooltip.Provider>
+  );
+}
+
+function Front() {
+  return (
+    <div className="front">
+      <TopBar />
+      <StartPage />
+    </div>
+  );
+}
+
+function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
+  const ready = useStudio((state) => state.document !== null);
+  const gallery = useStudio((state) => state.gallery && state.run !== null);
+  return (
+    <div className={gallery ? "workbench with-gallery" : "workbench"}>
+      <TopBar />
+      <ToolRail />
+      <ViewportPane onStage={onStage}>
+        <ToolHelp />
+        <LookingBanner />
+        <LineState />
+      </ViewportPane>
+      {gallery && <Gallery />}
+      {ready ? <Inspector /> : <aside className="inspector" aria-label="Panels" />}
+      <StatusBar />
+    </div>
+  );
+}
+
+/** What is wrong with the line to the engine, over the net. */
+function LineState() {
+  const line = useStudio((state) => state.line);
+  const problem = useStudio((state) => state.problem);
+  const dialogs = useDialogs();
+  if (line === "open" || line === "closed") return null;
+  return (
+    <div className="line-state" role="alert">
+      {line === "refused" ? (
+        <>
+          <b>This document can't be opened.</b>
+          <span>{problem}</span>
+          <button type="button" className="button" onClick={() => dialogs.open("start")}>
+            Back to the start
+          </button>
+        </>
+      ) : (
+        <>
+          <LoaderCircle />
+          <b>{line === "lost" ? "The engine does not answer." : "Opening …"}</b>
+          {line === "lost" && (
+            <span>
+              Nothing is lost. If it was stopped, start it again with <code>springform studio</code>
+              .
+            </span>
+          )}
+        </>
+      )}
+    </div>
+  );
+}
+
+function useDocumentInAddress(): string {
+  const [id, setId] = useState(documentInAddress);
+  useEffect(() => {
+    const follow = () => setId(documentInAddress());
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, []);
+  useEffect(() => {
+    openDocument(id);
+  }, [id]);
+  return id;
+}
+
+function useNotices(): void {
+  const notice = useStudio((state) => state.notice);
+  useEffect(() => {
+    if (notice) toast.error(notice.text, { id: notice.text });
+  }, [notice]);
+}
+
+function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, working: boolean): void {
+  const state = useStudio((all) => all.document !== null);
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      const typing =
+        event.target instanceof Element &&
+        event.target.closest("input, select, textarea, [role=menu]");
+      const command = commandOfKey(event);
+      if (covered || !command) return;
+      const global = command.id === "keys" || command.id === "theme";
+      if (!global && !(working && state)) return;
+      if (typing && !event.ctrlKey && !event.metaKey) return;
+      // A focused button is pressed by the space bar, which is not meant for the net then.
+      if (
+        event.key === " " &&
+        event.target instanceof Element &&
+        event.target.closest("button, [role=tab]")
+      )
+        return;
+      event.preventDefault();
+      const viewport = stage?.viewport ?? null;
+      const refused = command.refused ? command.refused(store.getState()) : null;
+      if (refused === null) command.run({ viewport, dialogs });
+      else toast.message(refused, { id: "refused" });
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  }, [stage, dialogs, covered, working, state]);
+}

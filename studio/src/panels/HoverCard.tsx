@@ -1,0 +1,141 @@
+// What the pointer is on: a spring with its force, length, rest length and formula; a node; a cell.
+import { groupOf, springCells } from "../document/net";
+import { lengthsOf, stressOf } from "../document/quantities";
+import { inDigits } from "../document/scale";
+import { useStudio } from "./use";
+
+/** Formulas by number of the law. */
+const LAWS = ["F = k (L − r)", "F = T", "F = EA(ε) ε", "F = k (L − r)"];
+
+const WIDTH = 236; // px
+const HEIGHT = 170; // px
+
+export function HoverCard() {
+  const hover = useStudio((state) => state.hover);
+  const net = useStudio((state) => state.net);
+  const motion = useStudio((state) => (state.hover ? state.motion : null));
+  if (!hover || !net || !motion || motion.header.revision !== net.revision) return null;
+  const left = hover.x + WIDTH + 24 < innerWidth - 370 ? hover.x + 16 : hover.x - WIDTH - 16;
+  const top = Math.max(8, Math.min(hover.y + 14, innerHeight - 100 - HEIGHT));
+  return (
+    <div
+      className="hover-card"
+      style={{ transform: `translate(${left}px, ${top}px)`, width: WIDTH }}
+      role="status"
+    >
+      {hover.kind === "spring" && <SpringCard spring={hover.row} />}
+      {hover.kind === "node" && <NodeCard node={hover.row} />}
+      {hover.kind === "cell" && <CellCard cell={hover.row} />}
+    </div>
+  );
+}
+
+/** Everything that is known of a spring. */
+export function SpringCard({ spring }: { spring: number }) {
+  const net = useStudio((state) => state.net)!;
+  const motion = useStudio((state) => state.motion)!;
+  const force = motion.forces[spring];
+  const length = lengthsOf(net, motion)[spring];
+  const rest = net.restLength[spring];
+  const stiffness = net.stiffness[spring];
+  const constant = net.constantForce[spring];
+  const ends = [net.nodes[net.ends[2 * spring]], net.nodes[net.ends[2 * spring + 1]]];
+  const cells = [...groupOf(springCells(net), spring)].map((cell) => net.addresses[cell]);
+  const law = LAWS[net.law[spring]];
+  return (
+    <>
+      <header>
+        <b>{net.law[spring] === 3 ? "Rod" : "Spring"}</b>
+        <span>
+          {ends[0]} – {ends[1]}
+        </span>
+      </header>
+      <Line name="Force" symbol="F" value={force} unit="N" strong />
+      <Line name="Length" symbol="L" value={length} unit="m" />
+      <Line name="Rest length" symbol="r" value={rest} unit="m" />
+      <Line name="Stiffness" symbol="k" value={stiffness} unit="N/m" />
+      {constant !== 0 && <Line name="Constant force" symbol="T" value={constant} unit="N" />}
+      {rest > 0 && <Line name="Strain" symbol="ε" value={(length - rest) / rest} unit="" />}
+      {net.area[spring] > 0 && (
+        <Line name="Stress" symbol="σ" value={stressOf(force, net.area[spring])} unit="N/mm²" />
+      )}
+      <Line name="Force density" symbol="q" value={force / length} unit="N/m" />
+      <footer>
+        <code>{law}</code>
+        <span>{cells.length ? `cell ${cells.join(", ")}` : "no cell"}</span>
+      </footer>
+    </>
+  );
+}
+
+function NodeCard({ node }: { node: number }) {
+  const net = useStudio((state) => state.net)!;
+  const motion = useStudio((state) => state.motion)!;
+  const anchor = net.anchors.indexOf(node);
+  const at = 3 * node;
+  const reaction = anchor >= 0 ? motion.reactions.subarray(3 * anchor, 3 * anchor + 3) : null;
+  return (
+    <>
+      <header>
+        <b>{anchor >= 0 ? `Anchor ${net.anchorNames[anchor]}` : "Node"}</b>
+        <span>{net.nodes[node]}</span>
+      </header>
+      {["x", "y", "z"].map((axis, place) => (
+        <Line key={axis} name={axis} symbol="" value={motion.positions[at + place]} unit="m" />
+      ))}
+      {reaction && (
+        <Line name="Reaction" symbol="R" value={Math.hypot(...reaction)} unit="N" strong />
+      )}
+      <footer>
+        <span>{anchor >= 0 ? "drag to move it" : "drag to pull the net"}</span>
+        <span>⇧ vertical · Ctrl level</span>
+      </footer>
+    </>
+  );
+}
+
+function CellCard({ cell }: { cell: number }) {
+  const net = useStudio((state) => state.net)!;
+  const motion = useStudio((state) => state.motion)!;
+  const springs = [...groupOf(net.own, cell)];
+  const inner = springs.reduce((sum, spring) => sum + motion.forces[spring], 0);
+  return (
+    <>
+      <header>
+        <b>Cell {net.addresses[cell]}</b>
+        <span>{net.parts[net.cellPart[cell]]}</span>
+      </header>
+      <Line name="Type" symbol="" value={net.types[cell]} unit="" />
+      <Line name="Level" symbol="" value={net.cellLevel[cell]} unit="" />
+      <Line name="Springs" symbol="" value={springs.length} unit="" />
+      <Line name="Inner force" symbol="ΣF" value={inner} unit="N" strong />
+    </>
+  );
+}
+
+function Line({
+  name,
+  symbol,
+  value,
+  unit,
+  strong,
+}: {
+  name: string;
+  symbol: string;
+  value: number | string;
+  unit: string;
+  strong?: boolean;
+}) {
+  return (
+    <div className={strong ? "line strong" : "line"}>
+      <span>
+        {name}
+        {symbol && <i>{symbol}</i>}
+      </span>
+      <span>
+        {typeof value === "string" ? value : inDigits(value, 4)}{" "}
+        <span className="unit">{unit}</span>
+      </span>
+    </div>
+  );
+}

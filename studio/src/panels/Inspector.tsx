@@ -1,0 +1,38 @@
+// The panels at the right.
+import { Tabs } from "radix-ui";
+import { useState } from "react";
+import { CellTree } from "./CellTree";
+import { EvolvePanel } from "./EvolvePanel";
+import { FrameworkPanel } from "./FrameworkPanel";
+import { HistoryPanel } from "./HistoryPanel";
+import { NetPanel } from "./NetPanel";
+
+const PANELS = [
+  { id: "net", name: "Net", Panel: NetPanel },
+  { id: "cells", name: "Cells", Panel: CellTree },
+  { id: "framework", name: "Framework", Panel: FrameworkPanel },
+  { id: "evolve", name: "Evolve", Panel: EvolvePanel },
+  { id: "history", name: "History", Panel: HistoryPanel },
+];
+
+export function Inspector() {
+  const [panel, setPanel] = useState("net");
+  return (
+    <aside className="inspector" aria-label="Panels">
+      <Tabs.Root value={panel} onValueChange={setPanel}>
+        <Tabs.List className="tabs" aria-label="Panels">
+          {PANELS.map(({ id, name }) => (
+            <Tabs.Trigger key={id} value={id}>
+              {name}
+            </Tabs.Trigger>
+          ))}
+        </Tabs.List>
+        {PANELS.map(({ id, Panel }) => (
+          <Tabs.Content key={id} value={id} className={`panel panel-${id}`}>
+            <Panel />
+          </Tabs.Content>
+        ))}
+      </Tabs.Root>
+    </aside>
+  );
+}

@@ -1,0 +1,204 @@
+// What the colours mean, and the choice of what they show.
+import { SlidersHorizontal } from "lucide-react";
+import { Popover } from "radix-ui";
+import { useEffect, useMemo, useState } from "react";
+import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
+import { brokenColour, cssColour, cssGradient, PALETTES, slackColour } from "../document/palettes";
+import { KINDS, QUANTITIES, type QuantityId, quantityOf } from "../document/quantities";
+import { inDigits, type RangeMode, valueAt } from "../document/scale";
+import { changeColour, store } from "../document/store";
+import { Choice, Hint, NumberField } from "./parts";
+import { useStudio } from "./use";
+
+const EVERY = 100; // ms; the legend need not follow every frame
+
+export function Legend() {
+  const motion = useCalmMotion();
+  const net = useStudio((state) => state.net);
+  const colour = useStudio((state) => state.view.colour);
+  const theme = useStudio((state) => state.theme);
+  const legend = useMemo(
+    () =>
+      net && motion && motion.header.revision === net.revision
+        ? colouringOf(net, motion, colour, theme).legend
+        : null,
+    [net, motion, colour, theme],
+  );
+  if (!net || !legend) return null;
+  const quantity = quantityOf(colour.by);
+  return (
+    <section className="floating legend" aria-label="Legend">
+      <header>
+        <Choice
+          label="Colour springs by"
+          hidden
+          value={colour.by}
+          options={[
+            ...QUANTITIES.filter(({ id, applies }) => id === colour.by || !applies || applies(net)),
+            ...KINDS,
+          ].map(({ id, name }) => ({ value: id, name }))}
+          onTake={(by: QuantityId) => changeColour({ by })}
+        />
+        {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
+      </header>
+      {legend.shows === "scale" ? <ScaleBar legend={legend} /> : <KindList legend={legend} />}
+    </section>
+  );
+}
+
+/** The motion now, at most every tenth of a second. */
+function useCalmMotion() {
+  const [motion, setMotion] = useState(store.getState().motion);
+  useEffect(() => {
+    let timer = 0;
+    const stop = store.subscribe((state, before) => {
+      if (state.motion === before.motion || timer) return;
+      timer = window.setTimeout(() => {
+        timer = 0;
+        setMotion(store.getState().motion);
+      }, EVERY);
+    });
+    return () => {
+      stop();
+      clearTimeout(timer);
+    };
+  }, []);
+  return motion;
+}
+
+function ScaleBar({ legend }: { legend: ScaleLegend }) {
+  const colour = useStudio((state) => state.view.colour);
+  const theme = useStudio((state) => state.theme);
+  const { scale, least, most, slack, broken } = legend;
+  const quantity = quantityOf(colour.by)!;
+  const unit = quantity.unit && ` ${quantity.unit}`;
+  const below = least < scale.low * (1 - 1e-6);
+  const above = most > scale.high * (1 + 1e-6);
+  return (
+    <>
+      <div className="scale-bar" style={{ background: cssGradient(colour.palette, theme) }} />
+      <div className="scale-ticks">
+        <span data-testid="legend-low">
+          {below && "≤ "}
+          {inDigits(scale.low)}
+        </span>
+        <span>{inDigits(valueAt(scale, 0.5))}</span>
+        <span data-testid="legend-high">
+          {above && "≥ "}
+          {inDigits(scale.high)}
+          {unit}
+        </span>
+      </div>
+      <footer>
+        <code>{quantity.formula}</code>
+        <span>
+          {[
+            scale.logarithmic && "log",
+            colour.mode === "percentile" && "5–95 %",
+            colour.mode === "fixed" && "fixed",
+          ]
+            .filter(Boolean)
+            .join(" · ")}
+        </span>
+      </footer>
+      {slack > 0 && (
+        <Entry
+          colour={cssColour(slackColour(theme))}
+          name={slack === 1 ? "slack spring" : "slack springs"}
+          count={slack}
+        />
+      )}
+      {broken > 0 && (
+        <Entry colour={cssColour(brokenColour(theme))} name="undefined" count={broken} />
+      )}
+    </>
+  );
+}
+
+function KindList({ legend }: { legend: KindLegend }) {
+  return (
+    <div className="kind-list">
+      {legend.entries.map(({ name, colour, count }) => (
+        <Entry key={name} colour={cssColour(colour)} name={name} count={count} />
+      ))}
+    </div>
+  );
+}
+
+function Entry({ colour, name, count }: { colour: string; name: string; count: number }) {
+  return (
+    <div className="legend-entry">
+      <i style={{ background: colour }} />
+      <span>{name}</span>
+      <span>{count.toLocaleString("en")}</span>
+    </div>
+  );
+}
+
+const MODES: { value: RangeMode; name: string }[] = [
+  { value: "full", name: "All values" },
+  { value: "percentile", name: "5th to 95th percentile" },
+  { value: "fixed", name: "Fixed" },
+];
+
+function ScaleSettings({ legend }: { legend: ScaleLegend }) {
+  const colour = useStudio((state) => state.view.colour);
+  const { low, high } = legend.scale;
+  return (
+    <Popover.Root>
+      <Hint text="Scale and palette" side="top">
+        <Popover.Trigger asChild>
+          <button type="button" className="icon-button small" aria-label="Scale and palette">
+            <SlidersHorizontal />
+          </button>
+        </Popover.Trigger>
+      </Hint>
+      <Popover.Portal>
+        <Popover.Content
+          className="popover"
+          side="top"
+          align="start"
+          sideOffset={10}
+          aria-label="Scale and palette"
+        >
+          <Choice
+            label="Palette"
+            value={colour.palette}
+            options={PALETTES.map(({ id, name }) => ({ value: id, name }))}
+            onTake={(palette) => changeColour({ palette })}
+          />
+          <Choice
+            label="Range"
+            value={colour.mode}
+            options={MODES}
+            onTake={(mode) =>
+              changeColour(mode === "fixed" ? { mode, fixed: [low, high] } : { mode })
+            }
+          />
+          {colour.mode === "fixed" && (
+            <div className="row">
+              <NumberField
+                label="From"
+                value={colour.fixed[0]}
+                onTake={(from) => changeColour({ fixed: [from, colour.fixed[1]] })}
+              />
+              <NumberField
+                label="To"
+                value={colour.fixed[1]}
+                onTake={(to) => changeColour({ fixed: [colour.fixed[0], to] })}
+              />
+            </div>
+          )}
+          <label className="check">
+            <input
+              type="checkbox"
+              checked={colour.logarithmic}
+              onChange={(event) => changeColour({ logarithmic: event.target.checked })}
+            />
+            Logarithmic
+          </label>
+        </Popover.Content>
+      </Popover.Portal>
+    </Popover.Root>
+  );
+}

@@ -1,0 +1,66 @@
+// The menu of the right mouse button on the net: what can be done with what is under it.
+import { ContextMenu } from "radix-ui";
+import { commandOf, retype } from "./commands";
+import { useDialogs } from "./dialogs";
+import { Keys } from "./parts";
+import { useStage, useStudio } from "./use";
+
+const ITEMS: Record<string, string[]> = {
+  cells: ["subdivide", "off", "on", "turn"],
+  springs: ["cut"],
+  nodes: ["hold", "let-go"],
+};
+
+export function NetMenu() {
+  const selection = useStudio((state) => state.selection);
+  const types = useStudio((state) => state.document?.cell_types);
+  const title =
+    selection.keys.length === 0
+      ? "Nothing selected"
+      : selection.keys.length > 1
+        ? `${selection.keys.length} ${selection.kind}`
+        : `${selection.kind === "cells" ? "Cell" : selection.kind === "springs" ? "Spring" : "Node"} ${selection.keys[0]}`;
+  return (
+    <ContextMenu.Portal>
+      <ContextMenu.Content className="menu" collisionPadding={8}>
+        <ContextMenu.Label className="menu-label">{title}</ContextMenu.Label>
+        {selection.keys.length > 0 && ITEMS[selection.kind].map((id) => <Item key={id} id={id} />)}
+        {selection.kind === "cells" && selection.keys.length > 0 && types && (
+          <ContextMenu.Sub>
+            <ContextMenu.SubTrigger className="menu-item">Type</ContextMenu.SubTrigger>
+            <ContextMenu.Portal>
+              <ContextMenu.SubContent className="menu">
+                {types.map(({ word, name }) => (
+                  <ContextMenu.Item key={word} className="menu-item" onSelect={() => retype(word)}>
+                    {word} {name !== word && name}
+                  </ContextMenu.Item>
+                ))}
+              </ContextMenu.SubContent>
+            </ContextMenu.Portal>
+          </ContextMenu.Sub>
+        )}
+        <ContextMenu.Separator className="menu-line" />
+        <Item id="fit" />
+        <Item id="undo" />
+      </ContextMenu.Content>
+    </ContextMenu.Portal>
+  );
+}
+
+function Item({ id }: { id: string }) {
+  const command = commandOf(id);
+  const refused = useStudio((state) => command.refused?.(state) ?? null);
+  const viewport = useStage()?.viewport ?? null;
+  const dialogs = useDialogs();
+  if (refused && (id === "hold" || id === "let-go")) return null;
+  return (
+    <ContextMenu.Item
+      className="menu-item"
+      disabled={refused !== null}
+      onSelect={() => command.run({ viewport, dialogs })}
+    >
+      {command.label}
+      {command.keys && <Keys keys={command.keys} />}
+    </ContextMenu.Item>
+  );
+}

@@ -1,0 +1,128 @@
+// The net as a whole: its figures, before and after the last action, stress-seeking and settings.
+import { useState } from "react";
+import { ask } from "../document/store";
+import { Choice, Fact, NumberField, Section } from "./parts";
+import { SelectionSections } from "./SelectionSections";
+import { useStudio } from "./use";
+
+export function NetPanel() {
+  return (
+    <>
+      <SelectionSections />
+      <Figures />
+      <StressSeeking />
+      <Settings />
+    </>
+  );
+}
+
+function Figures() {
+  const { figures, before, history, position } = useStudio((state) => state.document)!;
+  const last = history.find(({ number }) => number === position);
+  return (
+    <Section
+      title="Figures"
+      aside={before && last && <span className="aside">against before “{last.label}”</span>}
+    >
+      {!figures.converged && <p className="warning">No equilibrium: {figures.reason}</p>}
+      <Fact
+        name="Force differential"
+        value={figures.force_differential}
+        before={before?.force_differential}
+        better="less"
+        title="Largest over smallest spring force; undefined if a spring carries next to nothing"
+      />
+      <Fact name="Springs" value={figures.springs} before={before?.springs} digits={6} />
+      <Fact name="Largest force" value={figures.force_max} unit="N" before={before?.force_max} />
+      <Fact name="Smallest force" value={figures.force_min} unit="N" before={before?.force_min} />
+      <Fact name="Mean force" value={figures.force_mean} unit="N" before={before?.force_mean} />
+      <Fact
+        name="Total length"
+        value={figures.total_length}
+        unit="m"
+        before={before?.total_length}
+      />
+      <Fact
+        name="Shortest spring"
+        value={figures.shortest_spring}
+        unit="m"
+        before={before?.shortest_spring}
+      />
+      <Fact name="Area" value={figures.area} unit="m²" before={before?.area} />
+    </Section>
+  );
+}
+
+function StressSeeking() {
+  const types = useStudio((state) => state.document!.cell_types);
+  const [steps, setSteps] = useState(10);
+  const [kind, setKind] = useState("1");
+  const known = types.some(({ word }) => word === kind) ? kind : (types[0]?.word ?? "1");
+  const seek = (count: number) =>
+    ask({ type: "seek_stress", steps: count, kind: known }, `Seeking stress, ${count} steps`);
+  return (
+    <Section title="Stress-seeking">
+      <p className="explain">Subdivides the cell that carries most, solves, and does so again.</p>
+      <Choice
+        label="Type of the children"
+        value={known}
+        options={types.map(({ word, name }) => ({
+          value: word,
+          name: word === name ? word : `${word} ${name}`,
+        }))}
+        onTake={setKind}
+      />
+      <NumberField
+        label="Steps"
+        value={steps}
+        least={1}
+        whole
+        onTake={(value) => setSteps(Math.min(value, 1000))}
+      />
+      <div className="row">
+        <button type="button" className="button" onClick={() => seek(1)}>
+          One step
+        </button>
+        <button type="button" className="button" onClick={() => seek(steps)}>
+          {steps} steps
+        </button>
+      </div>
+    </Section>
+  );
+}
+
+const METHODS = [
+  { value: "recursive", name: "Recursive", explains: "Neighbours differ by one level at most." },
+  { value: "extensible", name: "Extensible", explains: "Cells of any levels meet." },
+  { value: "dynamic", name: "Dynamic", explains: "Cells of type 6 tie to every node around them." },
+];
+
+function Settings() {
+  const { method, stiffness, ring_factor } = useStudio((state) => state.document)!;
+  const set = (label: string, path: string[], value: unknown) =>
+    ask({ type: "set_value", label, path, value }, label);
+  return (
+    <Section title="All springs">
+      <NumberField
+        label="Stiffness"
+        value={stiffness}
+        unit="N/m"
+        least={1e-9}
+        onTake={(value) => set("Change the stiffness", ["springs", "stiffness"], value)}
+      />
+      <NumberField
+        label="Factor along free rings"
+        value={ring_factor}
+        least={1e-9}
+        onTake={(value) => set("Change the ring factor", ["springs", "ring_factor"], value)}
+      />
+      <Choice
+        label="Filter method"
+        value={method}
+        options={METHODS}
+        onTake={(value) => set(`Use the ${value} method`, ["method"], value)}
+      />
+      <p className="explain">{METHODS.find(({ value }) => value === method)?.explains}</p>
+    </Section>
+  );
+}

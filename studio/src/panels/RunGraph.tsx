@@ -1,0 +1,105 @@
+// How a run goes: force differential of the parent within its population, and springs, over generations.
+import { useEffect, useRef } from "react";
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import type { Run } from "../document/run";
+import { useStudio } from "./use";
+
+type Column = (number | null)[];
+
+export function RunGraph({ run, of }: { run: Run; of: "differential" | "springs" }) {
+  const box = useRef<HTMLDivElement>(null);
+  const plot = useRef<uPlot | null>(null);
+  const theme = useStudio((state) => state.theme);
+  const marks = useRef<number[]>([]);
+  const { rows } = run;
+  // biome-ignore lint/correctness/useExhaustiveDependencies: made anew when the colours of the page change
+  useEffect(() => {
+    const styles = getComputedStyle(document.documentElement);
+    const colour = (name: string) => styles.getPropertyValue(name).trim();
+    const axis = {
+      stroke: colour("--faint"),
+      grid: { stroke: colour("--line"), width: 1 },
+      ticks: { show: false },
+      font: "11px 'Inter Variable', sans-serif",
+    };
+    const band = (width: number) => ({
+      stroke: colour("--line-strong"),
+      width,
+      points: { show: false },
+    });
+    const series: uPlot.Series[] =
+      of === "differential"
+        ? [
+            {},
+            band(0),
+            band(0),
+            { ...band(1), dash: [3, 3] },
+            { stroke: colour("--accent"), width: 2, points: { show: false } },
+          ]
+        : [{}, { stroke: colour("--good"), width: 2, points: { show: false } }];
+    const made = new uPlot(
+      {
+        width: box.current!.clientWidth,
+        height: of === "differential" ? 150 : 96,
+        series,
+        bands:
+          of === "differential" ? [{ series: [2, 1], fill: `${colour("--line-strong")}66` }] : [],
+        scales: { x: { time: false } },
+        axes: [
+          { ...axis, size: 22 },
+          { ...axis, size: 40 },
+        ],
+        legend: { show: false },
+        cursor: { show: false },
+        padding: [8, 6, 0, 0],
+        hooks: {
+          draw: [
+            ({ ctx, bbox, valToPos }) => {
+              ctx.save();
+              ctx.strokeStyle = colour("--warn");
+              ctx.setLineDash([2, 3]);
+              for (const mark of marks.current) {
+                const x = valToPos(mark, "x", true);
+                ctx.beginPath();
+                ctx.moveTo(x, bbox.top);
+                ctx.lineTo(x, bbox.top + bbox.height);
+                ctx.stroke();
+              }
+              ctx.restore();
+            },
+          ],
+        },
+      },
+      [[]],
+      box.current!,
+    );
+    plot.current = made;
+    made.setData(dataOf(rows, of));
+    return () => made.destroy();
+  }, [theme, of]);
+  useEffect(() => {
+    marks.current = rows.filter(({ changed }) => changed).map(({ generation }) => generation);
+    plot.current?.setData(dataOf(rows, of));
+  }, [rows, of]);
+  const last = rows.at(-1);
+  const words =
+    of === "differential"
+      ? `Force differential over ${rows.length} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}`
+      : `Springs over ${rows.length} generations, now ${last?.springs ?? 0}`;
+  return <div className="graph" ref={box} role="img" aria-label={words} />;
+}
+
+function dataOf(rows: Run["rows"], of: "differential" | "springs"): uPlot.AlignedData {
+  const generations = rows.map(({ generation }) => generation);
+  const column = (name: "low" | "median" | "high" | "force_differential" | "springs"): Column =>
+    rows.map((row) => row[name]);
+  if (of === "springs") return [generations, column("springs")];
+  return [
+    generations,
+    column("low"),
+    column("high"),
+    column("median"),
+    column("force_differential"),
+  ];
+}

@@ -1,0 +1,185 @@
+// All individuals of a run by springs and force differential; the Pareto set stands out. A click looks at one.
+import { useEffect, useMemo, useRef, useState } from "react";
+import { paretoOf, placeOf } from "../document/run";
+import { inDigits } from "../document/scale";
+import { ask } from "../document/store";
+import { useStudio } from "./use";
+
+const HEIGHT = 190; // px
+const EDGE = { left: 40, right: 10, top: 10, bottom: 24 }; // px
+const REACH = 10; // px
+
+/** Share of the individuals, from the lowest differential up, that the picture shows. */
+const SHOWN = 0.98;
+
+export function Scatter() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const individuals = useStudio((state) => state.individuals);
+  const theme = useStudio((state) => state.theme);
+  const looking = useStudio((state) => state.document?.looking ?? null);
+  const [over, setOver] = useState<number | null>(null);
+  const front = useMemo(() => paretoOf(individuals), [individuals]);
+  const frame = useMemo(() => frameOf(individuals), [individuals]);
+  const width = 292;
+
+  const x = (row: number) =>
+    EDGE.left +
+    ((individuals.springs[row] - frame.left) / (frame.right - frame.left)) *
+      (width - EDGE.left - EDGE.right);
+  const y = (row: number) =>
+    HEIGHT -
+    EDGE.bottom -
+    ((Math.log(individuals.differential[row]) - frame.low) / (frame.high - frame.low)) *
+      (HEIGHT - EDGE.top - EDGE.bottom);
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: x and y follow from the individuals
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (!context || !canvas.current) return;
+    const ratio = Math.min(devicePixelRatio, 2);
+    canvas.current.width = width * ratio;
+    canvas.current.height = HEIGHT * ratio;
+    context.scale(ratio, ratio);
+    const styles = getComputedStyle(document.documentElement);
+    const colour = (name: string) => styles.getPropertyValue(name).trim();
+    drawAxes(context, frame, width, colour("--line"), colour("--faint"));
+    context.fillStyle = colour("--faint");
+    context.globalAlpha = individuals.springs.length > 5000 ? 0.22 : 0.4;
+    for (let row = 0; row < individuals.springs.length; row++) {
+      const at = y(row);
+      if (at >= EDGE.top - 1) context.fillRect(x(row) - 1, at - 1, 2, 2);
+    }
+    context.globalAlpha = 1;
+    context.strokeStyle = context.fillStyle = colour("--accent");
+    context.lineWidth = 1.4;
+    context.beginPath();
+    front.forEach((row, step) => {
+      if (step) context.lineTo(x(row), y(row));
+      else context.moveTo(x(row), y(row));
+    });
+    context.stroke();
+    for (const row of front) dot(context, x(row), y(row), 2.6);
+    const at =
+      looking?.individual != null
+        ? (looking.generation - 1) * individuals.population + looking.individual
+        : null;
+    context.fillStyle = colour("--ink");
+    for (const row of [at, over])
+      if (row !== null && row < individuals.springs.length) dot(context, x(row), y(row), 4.5);
+  }, [individuals, front, frame, theme, over, looking]);
+
+  const nearest = (event: React.MouseEvent): number | null => {
+    const box = canvas.current!.getBoundingClientRect();
+    const [px, py] = [event.clientX - box.left, event.clientY - box.top];
+    let best: number | null = null;
+    let least = REACH;
+    const look = (row: number, favour: number) => {
+      const distance = Math.hypot(x(row) - px, y(row) - py) - favour;
+      if (distance < least) {
+        least = distance;
+        best = row;
+      }
+    };
+    for (let row = 0; row < individuals.springs.length; row++) look(row, 0);
+    for (const row of front) look(row, 3);
+    return best;
+  };
+  const told = over === null ? null : placeOf(individuals, over);
+  return (
+    <div className="scatter">
+      <canvas
+        ref={canvas}
+        style={{ width, height: HEIGHT, cursor: over === null ? "default" : "pointer" }}
+        role="img"
+        aria-label={`${individuals.springs.length} individuals by springs and force differential, ${front.length} of them in the Pareto set`}
+        onPointerMove={(event) => setOver(nearest(event))}
+        onPointerLeave={() => setOver(null)}
+        onClick={(event) => {
+          const row = nearest(event);
+          if (row !== null)
+            ask({ type: "look", ...placeOf(individuals, row) }, "Rebuilding the individual");
+        }}
+      />
+      <p className="explain">
+        {told && over !== null
+          ? `Generation ${told.generation}, individual ${told.individual}: ${individuals.springs[over]} springs, ${inDigits(individuals.differential[over])}`
+          : "Springs against force differential. Click one to look at it."}
+      </p>
+    </div>
+  );
+}
+
+interface Frame {
+  left: number;
+  right: number;
+  /** Logarithms of the force differential. */
+  low: number;
+  high: number;
+}
+
+function frameOf({
+  springs,
+  differential,
+}: {
+  springs: Float32Array;
+  differential: Float32Array;
+}): Frame {
+  const known = differential.filter((value) => Number.isFinite(value) && value > 0).sort();
+  let left = Number.POSITIVE_INFINITY;
+  let right = 0;
+  for (const count of springs) {
+    left = Math.min(left, count);
+    right = Math.max(right, count);
+  }
+  if (!known.length) return { left: 0, right: 1, low: 0, high: 1 };
+  const low = Math.log(known[0]);
+  const high = Math.log(known[Math.floor(SHOWN * (known.length - 1))]);
+  const margin = 0.05 * Math.max(high - low, 0.05);
+  const gap = Math.max(1, 0.03 * (right - left));
+  return { left: left - gap, right: right + gap, low: low - margin, high: high + margin };
+}
+
+function drawAxes(
+  context: CanvasRenderingContext2D,
+  frame: Frame,
+  width: number,
+  line: string,
+  ink: string,
+): void {
+  context.font = "11px 'Inter Variable', sans-serif";
+  context.fillStyle = ink;
+  context.strokeStyle = line;
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  for (const share of [0, 0.5, 1]) {
+    const at = HEIGHT - EDGE.bottom - share * (HEIGHT - EDGE.top - EDGE.bottom);
+    context.beginPath();
+    context.moveTo(EDGE.left, at);
+    context.lineTo(width - EDGE.right, at);
+    context.stroke();
+    context.fillText(
+      inDigits(Math.exp(frame.low + share * (frame.high - frame.low))),
+      EDGE.left - 6,
+      at,
+    );
+  }
+  context.textBaseline = "top";
+  for (const [share, align] of [
+    [0, "left"],
+    [1, "right"],
+  ] as const) {
+    context.textAlign = align;
+    const at = EDGE.left + share * (width - EDGE.left - EDGE.right);
+    context.fillText(
+      inDigits(Math.round(frame.left + share * (frame.right - frame.left)), 6),
+      at,
+      HEIGHT - EDGE.bottom + 7,
+    );
+  }
+}
+
+function dot(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}

@@ -1,0 +1,96 @@
+// The bar at the bottom: form-finding and whether it has converged, and what the engine is busy with.
+import { LoaderCircle, Pause, Play, RotateCcw, StepForward } from "lucide-react";
+import { inDigits } from "../document/scale";
+import { move } from "./commands";
+import { IconButton } from "./parts";
+import { useStudio } from "./use";
+
+export function StatusBar() {
+  const running = useStudio((state) => state.motion?.header.running ?? true);
+  const busy = useStudio((state) => state.busy);
+  return (
+    <footer className="status-bar">
+      <fieldset className="motion-buttons" aria-label="Form-finding">
+        <IconButton
+          label={running ? "Pause form-finding" : "Run form-finding"}
+          keys="Space"
+          side="top"
+          onClick={() => move(running ? "pause" : "run")}
+        >
+          {running ? <Pause /> : <Play />}
+        </IconButton>
+        <IconButton label="Make one step" keys="." side="top" onClick={() => move("step")}>
+          <StepForward />
+        </IconButton>
+        <IconButton
+          label="Put the net back to where it was drawn"
+          keys="Shift+R"
+          side="top"
+          onClick={() => move("reset")}
+        >
+          <RotateCcw />
+        </IconButton>
+      </fieldset>
+      <Badge />
+      <Residual />
+      <div className="gap" />
+      {busy && (
+        <span className="busy" role="status">
+          <LoaderCircle /> {busy} …
+        </span>
+      )}
+      <Counts />
+    </footer>
+  );
+}
+
+function Badge() {
+  const header = useStudio((state) => state.motion?.header);
+  if (!header) return <span className="badge">waiting</span>;
+  if (header.held.length) return <span className="badge pulled">pulled</span>;
+  if (header.converged) return <span className="badge converged">converged</span>;
+  if (header.settled) {
+    return (
+      <span className="badge failed" title={header.reason}>
+        no equilibrium
+      </span>
+    );
+  }
+  return header.running ? (
+    <span className="badge moving">moving</span>
+  ) : (
+    <span className="badge">paused</span>
+  );
+}
+
+function Residual() {
+  const residual = useStudio((state) => state.motion?.header.residual ?? null);
+  const steps = useStudio((state) => state.motion?.header.steps ?? 0);
+  const reason = useStudio((state) => state.motion?.header.reason ?? "");
+  return (
+    <>
+      <span
+        className="status-fact"
+        title="Largest force out of balance at a free node over the mean spring force"
+      >
+        residual <b>{inDigits(residual, 2)}</b>
+      </span>
+      <span className="status-fact" title="Steps since the net was last disturbed">
+        step <b>{steps}</b>
+      </span>
+      {reason && <span className="status-fact warning">{reason}</span>}
+    </>
+  );
+}
+
+function Counts() {
+  const figures = useStudio((state) => state.document?.figures);
+  if (!figures) return null;
+  const count = (value: number) => value.toLocaleString("en");
+  return (
+    <span className="status-fact">
+      <b>{count(figures.springs)}</b> springs · <b>{count(figures.nodes)}</b> nodes ·{" "}
+      <b>{count(figures.cells)}</b> cells
+    </span>
+  );
+}

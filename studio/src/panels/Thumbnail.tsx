@@ -1,0 +1,127 @@
+// A net at a glance, drawn flat: springs coloured by force, near ones over far ones.
+import { useEffect, useRef } from "react";
+import { type Motion, motionOf } from "../document/motion";
+import { applyNet, type Net } from "../document/net";
+import { tableOf } from "../document/palettes";
+import { placeOn, scaleOf } from "../document/scale";
+import { fetchPicture } from "../protocol/fetching";
+import { useStudio } from "./use";
+
+export interface Pictured {
+  net: Net;
+  motion: Motion;
+}
+
+const MOST_KEPT = 400;
+const known = new Map<string, Promise<Pictured>>();
+
+/** The net and the state at an address such as `/api/scenes/sheet/picture`; fetched once. */
+function pictured(path: string, revision: string): Promise<Pictured> {
+  const name = `${path} ${revision}`;
+  let found = known.get(name);
+  if (!found) {
+    found = fetchPicture(path).then(([net, motion]) => {
+      if (net.header.frame !== "net" || motion.header.frame !== "motion")
+        throw new Error("no picture");
+      return {
+        net: applyNet(null, net.header, net.arrays),
+        motion: motionOf(motion.header, motion.arrays),
+      };
+    });
+    known.set(name, found);
+    // The oldest are forgotten: a long run has more pictures than a window can hold.
+    if (known.size > MOST_KEPT) known.delete(known.keys().next().value!);
+  }
+  return found;
+}
+
+export function Thumbnail({
+  path,
+  revision = "",
+  width,
+  height,
+}: {
+  path: string;
+  /** Pictures at one path are drawn anew when this changes. */
+  revision?: string;
+  width: number;
+  height: number;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const theme = useStudio((state) => state.theme);
+  const palette = useStudio((state) => state.view.colour.palette);
+  useEffect(() => {
+    let wanted = true;
+    pictured(path, revision).then(
+      (picture) =>
+        wanted &&
+        canvas.current &&
+        draw(canvas.current, picture, width, height, tableOf(palette, theme)),
+      () => known.delete(`${path} ${revision}`),
+    );
+    return () => {
+      wanted = false;
+    };
+  }, [path, revision, width, height, palette, theme]);
+  return <canvas ref={canvas} className="thumbnail" style={{ width, height }} />;
+}
+
+/** Direction from which all thumbnails are seen: right, up and towards the eye, each of unit length. */
+const RIGHT = [0.85, 0.527, 0];
+const TOWARDS = [0.49, -0.79, 0.37];
+const UP = [-0.195, 0.315, 0.929];
+
+function draw(
+  canvas: HTMLCanvasElement,
+  { net, motion }: Pictured,
+  width: number,
+  height: number,
+  table: Uint8Array,
+): void {
+  const ratio = Math.min(devicePixelRatio, 2);
+  canvas.width = width * ratio;
+  canvas.height = height * ratio;
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  context.scale(ratio, ratio);
+  const count = net.nodes.length;
+  const places = new Float32Array(3 * count);
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  const along = (axes: number[], at: number) =>
+    axes[0] * motion.positions[at] +
+    axes[1] * motion.positions[at + 1] +
+    axes[2] * motion.positions[at + 2];
+  for (let at = 0; at < 3 * count; at += 3) {
+    places[at] = along(RIGHT, at);
+    places[at + 1] = -along(UP, at);
+    places[at + 2] = along(TOWARDS, at);
+    box[0] = Math.min(box[0], places[at]);
+    box[1] = Math.min(box[1], places[at + 1]);
+    box[2] = Math.max(box[2], places[at]);
+    box[3] = Math.max(box[3], places[at + 1]);
+  }
+  const margin = 10;
+  const size = Math.min(
+    (width - 2 * margin) / (box[2] - box[0] || 1),
+    (height - 2 * margin) / (box[3] - box[1] || 1),
+  );
+  const x = (node: number) => width / 2 + size * (places[3 * node] - (box[0] + box[2]) / 2);
+  const y = (node: number) => height / 2 + size * (places[3 * node + 1] - (box[1] + box[3]) / 2);
+  const scale = scaleOf(motion.forces, { mode: "percentile", logarithmic: false, fixed: [0, 1] });
+  const springs = Array.from(motion.forces.keys());
+  const depth = (spring: number) =>
+    places[3 * net.ends[2 * spring] + 2] + places[3 * net.ends[2 * spring + 1] + 2];
+  springs.sort((a, b) => depth(a) - depth(b));
+  const near = depth(springs[springs.length - 1] ?? 0);
+  const far = depth(springs[0] ?? 0);
+  context.lineWidth = springs.length > 3000 ? 0.5 : 0.9;
+  for (const spring of springs) {
+    const shade = 3 * Math.round(255 * placeOn(scale, motion.forces[spring]));
+    const opacity = near > far ? 0.3 + (0.7 * (depth(spring) - far)) / (near - far) : 1;
+    context.strokeStyle = `rgb(${table[shade]} ${table[shade + 1]} ${table[shade + 2]} / ${opacity.toFixed(2)})`;
+    context.beginPath();
+    context.moveTo(x(net.ends[2 * spring]), y(net.ends[2 * spring]));
+    context.lineTo(x(net.ends[2 * spring + 1]), y(net.ends[2 * spring + 1]));
+    context.stroke();
+  }
+}

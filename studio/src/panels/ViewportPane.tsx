@@ -1,0 +1,184 @@
+// The canvas, and what lies over it: names of anchors, what the pointer is on, legend, views.
+import { Anchor, CircleDot, Grid2x2, Maximize, MoveUpRight, Spline } from "lucide-react";
+import { ContextMenu } from "radix-ui";
+import { type ReactNode, useEffect, useRef, useState } from "react";
+import { positionOf } from "../document/motion";
+import { clicked, springKey } from "../document/selection";
+import { changeView, select, store } from "../document/store";
+import { Hands } from "../tools/hands";
+import type { StandardView } from "../viewport/camera";
+import { Viewport } from "../viewport/scene";
+import { HoverCard } from "./HoverCard";
+import { Legend } from "./Legend";
+import { NetMenu } from "./NetMenu";
+import { IconButton } from "./parts";
+import { type Stage, useStage, useStudio } from "./use";
+
+/** Names of anchors are shown while they leave room for the net. */
+const MOST_NAMES = 40;
+
+export function ViewportPane({
+  onStage,
+  children,
+}: {
+  onStage(stage: Stage | null): void;
+  children?: ReactNode;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const names = useRef<HTMLDivElement>(null);
+  const [failed, setFailed] = useState(false);
+  useEffect(() => {
+    let viewport: Viewport;
+    try {
+      viewport = new Viewport(canvas.current!);
+    } catch {
+      setFailed(true);
+      return;
+    }
+    const hands = new Hands(viewport, canvas.current!);
+    viewport.onDraw = () => placeNames(viewport, names.current!);
+    onStage({ viewport, hands });
+    return () => {
+      onStage(null);
+      hands.dispose();
+      viewport.dispose();
+    };
+  }, [onStage]);
+
+  const stage = useStage();
+  const selectUnder = (event: React.MouseEvent) => {
+    const { net, selection } = store.getState();
+    const hit = stage?.hands.under(event);
+    if (!net || !hit) return;
+    const kind = hit.kind === "node" ? "nodes" : hit.kind === "spring" ? "springs" : "cells";
+    const key =
+      hit.kind === "node"
+        ? net.nodes[hit.row]
+        : hit.kind === "spring"
+          ? springKey(net, hit.row)
+          : net.addresses[hit.row];
+    if (selection.kind !== kind || !selection.keys.includes(key))
+      select(clicked(selection, kind, key, false));
+  };
+
+  return (
+    <main className="viewport" aria-label="Net">
+      {failed && (
+        <p className="empty" role="alert">
+          This browser can't draw in three dimensions. Switch on hardware acceleration or WebGL in
+          its settings, then load the page again.
+        </p>
+      )}
+      <ContextMenu.Root>
+        <ContextMenu.Trigger asChild onContextMenu={selectUnder}>
+          <canvas
+            ref={canvas}
+            tabIndex={0}
+            role="img"
+            aria-label="The net; the panels beside it hold all that can be done with it"
+          />
+        </ContextMenu.Trigger>
+        <NetMenu />
+      </ContextMenu.Root>
+      <div className="anchor-names" ref={names} aria-hidden="true" />
+      <HoverCard />
+      <Legend />
+      <ViewButtons />
+      {children}
+    </main>
+  );
+}
+
+function placeNames(viewport: Viewport, layer: HTMLElement): void {
+  const { net, motion, view } = store.getState();
+  const shown =
+    net && motion && view.anchors && net.anchors.length <= MOST_NAMES ? net.anchors.length : 0;
+  while (layer.children.length > shown) layer.lastChild!.remove();
+  while (layer.children.length < shown) layer.append(document.createElement("span"));
+  for (let anchor = 0; anchor < shown; anchor++) {
+    const name = layer.children[anchor] as HTMLElement;
+    const place = viewport.project(positionOf(motion!, net!.anchors[anchor]));
+    name.hidden = !place;
+    if (!place) continue;
+    if (name.textContent !== net!.anchorNames[anchor]) name.textContent = net!.anchorNames[anchor];
+    name.style.transform = `translate(${Math.round(place[0] + 9)}px, ${Math.round(place[1] - 20)}px)`;
+  }
+}
+
+const VIEWS: { view: StandardView; name: string; letter: string; keys: string }[] = [
+  { view: "perspective", name: "From the corner", letter: "3D", keys: "0" },
+  { view: "front", name: "From the front", letter: "F", keys: "1" },
+  { view: "right", name: "From the right", letter: "R", keys: "3" },
+  { view: "top", name: "From the top", letter: "T", keys: "7" },
+];
+
+function ViewButtons() {
+  const stage = useStage();
+  const view = useStudio((state) => state.view);
+  return (
+    <>
+      <div className="floating view-buttons" role="toolbar" aria-label="Views">
+        {VIEWS.map(({ view: direction, name, letter, keys }) => (
+          <IconButton
+            key={direction}
+            label={name}
+            keys={keys}
+            side="left"
+            onClick={() => stage?.viewport.fit(direction)}
+          >
+            <span className="letter">{letter}</span>
+          </IconButton>
+        ))}
+        <IconButton label="Fit the net" keys="F" side="left" onClick={() => stage?.viewport.fit()}>
+          <Maximize />
+        </IconButton>
+      </div>
+      <div className="floating show-buttons" role="toolbar" aria-label="What is shown">
+        <IconButton
+          label="Cells as a skin"
+          keys="C"
+          side="left"
+          pressed={view.cells}
+          onClick={() => changeView({ cells: !view.cells })}
+        >
+          <Grid2x2 />
+        </IconButton>
+        <IconButton
+          label="Nodes"
+          keys="N"
+          side="left"
+          pressed={view.nodes}
+          onClick={() => changeView({ nodes: !view.nodes })}
+        >
+          <CircleDot />
+        </IconButton>
+        <IconButton
+          label="Anchors and their names"
+          side="left"
+          pressed={view.anchors}
+          onClick={() => changeView({ anchors: !view.anchors })}
+        >
+          <Anchor />
+        </IconButton>
+        <IconButton
+          label="Reactions"
+          keys="T"
+          side="left"
+          pressed={view.reactions}
+          onClick={() => changeView({ reactions: !view.reactions })}
+        >
+          <MoveUpRight />
+        </IconButton>
+        <IconButton
+          label="Springs as thick as their force"
+          keys="W"
+          side="left"
+          pressed={view.thickness}
+          onClick={() => changeView({ thickness: !view.thickness })}
+        >
+          <Spline />
+        </IconButton>
+      </div>
+    </>
+  );
+}

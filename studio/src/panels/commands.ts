@@ -1,0 +1,329 @@
+// Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
+import { NOTHING, selectedRows } from "../document/selection";
+import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
+import type { Viewport } from "../viewport/scene";
+
+export type Group = "Net" | "Cells" | "Springs and nodes" | "Tools" | "View" | "Document";
+
+export interface Command {
+  id: string;
+  label: string;
+  group: Group;
+  /** Keys as `KeyboardEvent.key` names them, `Ctrl+` and `Shift+` before them. */
+  keys?: string;
+  /** Whether it can be done now; if not, why. */
+  refused?(state: State): string | null;
+  run(stage: { viewport: Viewport | null; dialogs: Dialogs }): void;
+}
+
+/** What opens over the page. */
+export interface Dialogs {
+  open(dialog: "palette" | "keys" | "save" | "start"): void;
+}
+
+const needsCells = ({ selection }: State) =>
+  selection.kind === "cells" && selection.keys.length ? null : "select cells first";
+const needsOneNode = ({ selection }: State) =>
+  selection.kind === "nodes" && selection.keys.length === 1 ? null : "select one node first";
+const needsSpring = ({ selection }: State) =>
+  selection.kind === "springs" && selection.keys.length === 1 ? null : "select one spring first";
+
+function cells(): string[] {
+  const { selection } = store.getState();
+  return selection.kind === "cells" ? selection.keys : [];
+}
+
+/** Whether the selected node is an anchor. */
+function onAnchor({ net, selection }: State): boolean {
+  return !!net && selectedRows(net, selection, "nodes").some((row) => net.anchors.includes(row));
+}
+
+function editCells(what: "subdivide" | "off" | "on" | "turn", label: string): () => void {
+  return () => {
+    ask({ type: "edit_cells", what, cells: cells(), kind: null }, label);
+  };
+}
+
+/** Gives the selected cells a type. */
+export function retype(kind: string): void {
+  ask({ type: "edit_cells", what: "retype", cells: cells(), kind }, "Changing the type");
+}
+
+export function undo(redo: boolean): void {
+  ask({ type: "undo", redo }, redo ? "Redoing" : "Undoing");
+}
+
+export function move(what: "run" | "pause" | "step" | "reset"): void {
+  ask({ type: "move", what });
+}
+
+export function seek(steps: number): void {
+  const { document } = store.getState();
+  const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
+  ask({ type: "seek_stress", steps, kind }, `Seeking stress, ${steps} steps`);
+}
+
+const tool = (id: ToolId) => () => store.setState({ tool: id });
+
+export const COMMANDS: Command[] = [
+  {
+    id: "run",
+    label: "Run or pause form-finding",
+    group: "Net",
+    keys: "Space",
+    run: () => move(store.getState().motion?.header.running ? "pause" : "run"),
+  },
+  { id: "step", label: "Make one step", group: "Net", keys: ".", run: () => move("step") },
+  {
+    id: "reset",
+    label: "Put the net back to where it was drawn",
+    group: "Net",
+    keys: "Shift+R",
+    run: () => move("reset"),
+  },
+  { id: "seek", label: "Seek stress, one step", group: "Net", keys: "G", run: () => seek(1) },
+  {
+    id: "seek10",
+    label: "Seek stress, ten steps",
+    group: "Net",
+    keys: "Shift+G",
+    run: () => seek(10),
+  },
+  {
+    id: "subdivide",
+    label: "Subdivide",
+    group: "Cells",
+    keys: "S",
+    refused: needsCells,
+    run: editCells("subdivide", "Subdividing"),
+  },
+  {
+    id: "off",
+    label: "Merge with siblings (off)",
+    group: "Cells",
+    keys: "M",
+    refused: needsCells,
+    run: editCells("off", "Merging"),
+  },
+  {
+    id: "on",
+    label: "Bring children back (on)",
+    group: "Cells",
+    keys: "Shift+M",
+    refused: needsCells,
+    run: editCells("on", "Bringing back"),
+  },
+  {
+    id: "turn",
+    label: "Turn by a quarter",
+    group: "Cells",
+    keys: "R",
+    refused: needsCells,
+    run: editCells("turn", "Turning"),
+  },
+  {
+    id: "cut",
+    label: "Cut the spring",
+    group: "Springs and nodes",
+    keys: "Delete",
+    refused: needsSpring,
+    run: () => {
+      const nodes = store.getState().selection.keys[0].split(" ");
+      ask({ type: "edit_spring", what: "cut", nodes }, "Cutting");
+    },
+  },
+  {
+    id: "hold",
+    label: "Hold the node as an anchor",
+    group: "Springs and nodes",
+    keys: "H",
+    refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? "it is an anchor" : null),
+    run: () => {
+      ask(
+        { type: "fix_node", node: store.getState().selection.keys[0], fixed: true },
+        "Holding the node",
+      );
+    },
+  },
+  {
+    id: "let-go",
+    label: "Let the anchor go",
+    group: "Springs and nodes",
+    keys: "Shift+H",
+    refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? null : "it is no anchor"),
+    run: () => {
+      ask(
+        { type: "fix_node", node: store.getState().selection.keys[0], fixed: false },
+        "Letting the anchor go",
+      );
+    },
+  },
+  { id: "tool-pull", label: "Select and pull", group: "Tools", keys: "V", run: tool("pull") },
+  {
+    id: "tool-subdivide",
+    label: "Subdivide with a brush",
+    group: "Tools",
+    keys: "B",
+    run: tool("subdivide"),
+  },
+  { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
+  { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
+  {
+    id: "fit",
+    label: "Fit the net",
+    group: "View",
+    keys: "F",
+    run: ({ viewport }) => viewport?.fit(),
+  },
+  {
+    id: "view-perspective",
+    label: "View from the corner",
+    group: "View",
+    keys: "0",
+    run: ({ viewport }) => viewport?.fit("perspective"),
+  },
+  {
+    id: "view-front",
+    label: "View from the front",
+    group: "View",
+    keys: "1",
+    run: ({ viewport }) => viewport?.fit("front"),
+  },
+  {
+    id: "view-right",
+    label: "View from the right",
+    group: "View",
+    keys: "3",
+    run: ({ viewport }) => viewport?.fit("right"),
+  },
+  {
+    id: "view-top",
+    label: "View from the top",
+    group: "View",
+    keys: "7",
+    run: ({ viewport }) => viewport?.fit("top"),
+  },
+  {
+    id: "cells",
+    label: "Show cells as a skin",
+    group: "View",
+    keys: "C",
+    run: () => changeView({ cells: !store.getState().view.cells }),
+  },
+  {
+    id: "nodes",
+    label: "Show nodes",
+    group: "View",
+    keys: "N",
+    run: () => changeView({ nodes: !store.getState().view.nodes }),
+  },
+  {
+    id: "reactions",
+    label: "Show reactions",
+    group: "View",
+    keys: "T",
+    run: () => changeView({ reactions: !store.getState().view.reactions }),
+  },
+  {
+    id: "thickness",
+    label: "Draw springs as thick as their force",
+    group: "View",
+    keys: "W",
+    run: () => changeView({ thickness: !store.getState().view.thickness }),
+  },
+  {
+    id: "theme",
+    label: "Dark or light",
+    group: "View",
+    keys: "D",
+    run: () => store.setState(({ theme }) => ({ theme: theme === "dark" ? "light" : "dark" })),
+  },
+  {
+    id: "undo",
+    label: "Undo",
+    group: "Document",
+    keys: "Ctrl+Z",
+    refused: ({ document }) => (document?.position ? null : "nothing was done"),
+    run: () => undo(false),
+  },
+  {
+    id: "redo",
+    label: "Redo",
+    group: "Document",
+    keys: "Ctrl+Shift+Z",
+    refused: ({ document }) =>
+      document && document.position < document.length ? null : "nothing was undone",
+    run: () => undo(true),
+  },
+  {
+    id: "save",
+    label: "Save as a design file",
+    group: "Document",
+    keys: "Ctrl+S",
+    run: ({ dialogs }) => dialogs.open("save"),
+  },
+  {
+    id: "picture",
+    label: "Export a picture (PNG)",
+    group: "Document",
+    run: ({ viewport }) => viewport && exportPicture(viewport),
+  },
+  {
+    id: "start",
+    label: "Open another document",
+    group: "Document",
+    keys: "Ctrl+O",
+    run: ({ dialogs }) => dialogs.open("start"),
+  },
+  {
+    id: "palette",
+    label: "Find a command",
+    group: "Document",
+    keys: "Ctrl+K",
+    run: ({ dialogs }) => dialogs.open("palette"),
+  },
+  {
+    id: "keys",
+    label: "Show all keys",
+    group: "Document",
+    keys: "?",
+    run: ({ dialogs }) => dialogs.open("keys"),
+  },
+  {
+    id: "deselect",
+    label: "Select nothing",
+    group: "Tools",
+    keys: "Escape",
+    run: () => select(NOTHING),
+  },
+];
+
+export function commandOf(id: string): Command {
+  const found = COMMANDS.find((command) => command.id === id);
+  if (!found) throw new Error(`there is no command ${id}`);
+  return found;
+}
+
+/** The command that a key press means, if any. */
+export function commandOfKey(event: KeyboardEvent): Command | undefined {
+  const name =
+    event.key === " " ? "Space" : event.key.length === 1 ? event.key.toUpperCase() : event.key;
+  const letter = /^[A-Z]$/.test(name);
+  const control = event.ctrlKey || event.metaKey ? "Ctrl+" : "";
+  // Where Shift only chooses the character, such as ?, it is no part of the key.
+  const shift = event.shiftKey && (letter || name.length > 1) ? "Shift+" : "";
+  const pressed = `${control}${shift}${name}`;
+  const same = pressed === "Backspace" ? "Delete" : pressed === "Ctrl+Y" ? "Ctrl+Shift+Z" : pressed;
+  return COMMANDS.find(({ keys }) => keys === same);
+}
+
+async function exportPicture(viewport: Viewport): Promise<void> {
+  const name = store.getState().document?.name ?? "net";
+  const address = URL.createObjectURL(await viewport.picture());
+  const link = Object.assign(document.createElement("a"), {
+    href: address,
+    download: `${name}.png`,
+  });
+  link.click();
+  URL.revokeObjectURL(address);
+}

@@ -1,0 +1,219 @@
+// Small parts that all panels are made of: buttons with tooltips, keys, numbers, fields.
+import { Tooltip } from "radix-ui";
+import { type ComponentProps, type ReactNode, useEffect, useRef, useState } from "react";
+import { inDigits } from "../document/scale";
+
+/** Keys as they are printed on a keyboard. */
+export function Keys({ keys }: { keys: string }) {
+  const apple = /Mac|iP/.test(navigator.platform);
+  const names: Record<string, string> = {
+    Ctrl: apple ? "⌘" : "Ctrl",
+    Shift: "⇧",
+    Delete: "Del",
+    Escape: "Esc",
+  };
+  return (
+    <span className="keys">
+      {keys.split("+").map((key) => (
+        <kbd key={key}>{names[key] ?? key}</kbd>
+      ))}
+    </span>
+  );
+}
+
+/** Text that appears beside something the pointer rests on. */
+export function Hint({
+  text,
+  keys,
+  side = "bottom",
+  children,
+}: {
+  text: string;
+  keys?: string | undefined;
+  side?: "top" | "right" | "bottom" | "left";
+  children: ReactNode;
+}) {
+  return (
+    <Tooltip.Root>
+      <Tooltip.Trigger asChild>{children}</Tooltip.Trigger>
+      <Tooltip.Portal>
+        <Tooltip.Content className="hint" side={side} sideOffset={6} collisionPadding={8}>
+          {text}
+          {keys && <Keys keys={keys} />}
+        </Tooltip.Content>
+      </Tooltip.Portal>
+    </Tooltip.Root>
+  );
+}
+
+/** A button that shows an icon and is named by its tooltip. */
+export function IconButton({
+  label,
+  keys,
+  side,
+  pressed,
+  children,
+  ...rest
+}: {
+  label: string;
+  keys?: string | undefined;
+  side?: "top" | "right" | "bottom" | "left";
+  pressed?: boolean;
+} & ComponentProps<"button">) {
+  return (
+    <Hint text={label} keys={keys} {...(side ? { side } : {})}>
+      <button
+        type="button"
+        className="icon-button"
+        aria-label={label}
+        aria-pressed={pressed}
+        {...rest}
+      >
+        {children}
+      </button>
+    </Hint>
+  );
+}
+
+/** A headed part of a panel. */
+export function Section({
+  title,
+  aside,
+  children,
+}: {
+  title: string;
+  aside?: ReactNode;
+  children: ReactNode;
+}) {
+  return (
+    <section className="section">
+      <header>
+        <h2>{title}</h2>
+        {aside}
+      </header>
+      {children}
+    </section>
+  );
+}
+
+/** A value with its name, unit and, if it is known, how it changed. */
+export function Fact({
+  name,
+  value,
+  unit = "",
+  before,
+  better,
+  digits = 4,
+  title,
+}: {
+  name: string;
+  value: number | null | string;
+  unit?: string;
+  before?: number | null | undefined;
+  /** Which way is better; without it a change is only told. */
+  better?: "less" | "more";
+  digits?: number;
+  title?: string;
+}) {
+  const changed = typeof value === "number" && typeof before === "number" && value !== before;
+  const change = changed ? value - before : 0;
+  const good = better && (better === "less" ? change < 0 : change > 0);
+  const tone = !better ? "" : good ? "good" : "bad";
+  return (
+    <div className="fact" title={title}>
+      <span className="fact-name">{name}</span>
+      <span className="fact-value">
+        {changed && (
+          <span className={`fact-change ${tone}`}>
+            {change > 0 ? "+" : "−"}
+            {inDigits(Math.abs(change), 3)}
+          </span>
+        )}
+        <span>{typeof value === "string" ? value : inDigits(value, digits)}</span>
+        <span className="unit">{unit}</span>
+      </span>
+    </div>
+  );
+}
+
+/** A number that is typed; taken with Enter or on leaving the field. */
+export function NumberField({
+  label,
+  value,
+  unit = "",
+  onTake,
+  least,
+  whole,
+}: {
+  label: string;
+  value: number;
+  unit?: string;
+  onTake(value: number): void;
+  least?: number;
+  whole?: boolean;
+}) {
+  const shown = String(Math.round(value * 1e6) / 1e6);
+  const [text, setText] = useState(shown);
+  const field = useRef<HTMLInputElement>(null);
+  useEffect(() => setText(shown), [shown]);
+  const number = Number(text.trim().replace(",", "."));
+  const valid =
+    text.trim() !== "" &&
+    Number.isFinite(number) &&
+    (least === undefined || number >= least) &&
+    (!whole || Number.isInteger(number));
+  const take = () => {
+    if (!valid) setText(shown);
+    else if (number !== Number(shown)) onTake(number);
+  };
+  return (
+    <label className="number-field">
+      <span>{label}</span>
+      <input
+        ref={field}
+        inputMode="decimal"
+        value={text}
+        aria-invalid={!valid}
+        onChange={(event) => setText(event.target.value)}
+        onBlur={take}
+        onKeyDown={(event) => {
+          if (event.key === "Enter") take();
+          if (event.key === "Escape") {
+            setText(shown);
+            field.current?.blur();
+          }
+        }}
+      />
+      {unit && <span className="unit">{unit}</span>}
+    </label>
+  );
+}
+
+/** A choice from a list. */
+export function Choice<T extends string>({
+  label,
+  value,
+  options,
+  onTake,
+  hidden,
+}: {
+  label: string;
+  value: T;
+  options: { value: T; name: string }[];
+  onTake(value: T): void;
+  /** Whether the label is only for screen readers. */
+  hidden?: boolean;
+}) {
+  return (
+    <label className="choice">
+      <span className={hidden ? "visually-hidden" : ""}>{label}</span>
+      <select value={value} onChange={(event) => onTake(event.target.value as T)}>
+        {options.map((option) => (
+          <option key={option.value} value={option.value}>
+            {option.name}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}

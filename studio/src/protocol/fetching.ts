@@ -1,0 +1,43 @@
+// What is fetched rather than streamed: scenes, documents and their pictures.
+import { engineAddress } from "./address";
+import { decodeFrame, type Frame } from "./frames";
+import type { Opened, Opening, Refusal, Shelf } from "./messages";
+
+async function answer(path: string, options: RequestInit = {}, query = ""): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(engineAddress(path) + query, options);
+  } catch {
+    throw new Error("the engine does not answer; start it again with: springform studio");
+  }
+  if (response.ok) return response;
+  const refusal = (await response.json().catch(() => null)) as Refusal | null;
+  throw new Error(refusal?.problem ?? `the engine answered with ${response.status}`);
+}
+
+/** Scenes and documents that can be opened. */
+export async function fetchShelf(): Promise<Shelf> {
+  return (await answer("/api/shelf")).json() as Promise<Shelf>;
+}
+
+/** Opens a scene or a design file as a document; returns the document's id. */
+export async function openSource(source: string): Promise<string> {
+  const body = JSON.stringify({ source } satisfies Opening);
+  const opened = (await (
+    await answer("/api/documents", { method: "POST", body })
+  ).json()) as Opened;
+  return opened.id;
+}
+
+/** The net and the state of a picture, such as `/api/scenes/sheet/picture`. */
+export async function fetchPicture(path: string): Promise<[net: Frame, motion: Frame]> {
+  const buffer = await (await answer(path)).arrayBuffer();
+  const length = new DataView(buffer).getUint32(0, true);
+  return [decodeFrame(buffer, 4), decodeFrame(buffer, 4 + length)];
+}
+
+/** All individuals of a document's run from a generation on. */
+export async function fetchTable(document: string, first: number): Promise<Frame> {
+  const response = await answer(`/api/documents/${document}/run`, {}, `&from=${first}`);
+  return decodeFrame(await response.arrayBuffer());
+}

@@ -1,0 +1,533 @@
+// Messages between engine and window, generated from python/springform/studio/messages.py by `make messages`.
+
+/**
+ * All of them, for the generator.
+ */
+export interface Protocol {
+  request:
+    | EditCells
+    | EditSpring
+    | MoveAnchor
+    | FixNode
+    | SeekStress
+    | SetValue
+    | SetFramework
+    | Undo
+    | Travel
+    | Save
+    | Move
+    | Evolve
+    | SteerRun
+    | Look
+    | Follow
+    | Reinstate
+    | Hold
+    | Release
+    | Received;
+  event: DocumentState | RunState | Welcome | Reply | Problem;
+  frame: NetHeader | MotionHeader | TableHeader;
+  shelf: Shelf;
+  opening: Opening;
+  opened: Opened;
+  refusal: Refusal;
+}
+/**
+ * Subdivide, switch off, switch on or retype cells.
+ */
+export interface EditCells {
+  type: "edit_cells";
+  id: number;
+  what: "subdivide" | "off" | "on" | "retype" | "turn";
+  /**
+   * @minItems 1
+   * @maxItems 100000
+   */
+  cells: string[];
+  /**
+   * Cell type of the children, or the new type.
+   */
+  kind: string | null;
+}
+/**
+ * Cut the spring between two nodes, or add one.
+ */
+export interface EditSpring {
+  type: "edit_spring";
+  id: number;
+  what: "cut" | "add";
+  /**
+   * @minItems 2
+   * @maxItems 2
+   */
+  nodes: string[];
+}
+/**
+ * Hold an anchor somewhere else.
+ */
+export interface MoveAnchor {
+  type: "move_anchor";
+  id: number;
+  anchor: string;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  position: number[];
+}
+/**
+ * Make a base vertex an anchor where it is now, or let an anchor go.
+ */
+export interface FixNode {
+  type: "fix_node";
+  id: number;
+  node: string;
+  fixed: boolean;
+}
+/**
+ * Subdivide the cell of highest inner force, a number of times.
+ */
+export interface SeekStress {
+  type: "seek_stress";
+  id: number;
+  steps: number;
+  kind: string;
+}
+/**
+ * Change a value of the design file.
+ */
+export interface SetValue {
+  type: "set_value";
+  id: number;
+  label: string;
+  /**
+   * @maxItems 20
+   */
+  path: (string | number)[];
+  value: unknown;
+}
+/**
+ * Change the framework; cells that no longer fit start anew.
+ */
+export interface SetFramework {
+  type: "set_framework";
+  id: number;
+  framework: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Undo the last action, or redo the one that was undone last.
+ */
+export interface Undo {
+  type: "undo";
+  id: number;
+  redo: boolean;
+}
+/**
+ * Undo or redo until a number of actions is done.
+ */
+export interface Travel {
+  type: "travel";
+  id: number;
+  position: number;
+}
+/**
+ * Write the design file; a path makes it the document's file.
+ */
+export interface Save {
+  type: "save";
+  id: number;
+  path: string | null;
+  /**
+   * Whether another file that exists is replaced.
+   */
+  replace: boolean;
+}
+/**
+ * Let the net move, stop it, make one step, or put it back to where it was drawn.
+ */
+export interface Move {
+  type: "move";
+  id: number;
+  what: "run" | "pause" | "step" | "reset";
+}
+/**
+ * Start a run from the design, with parameters; what is left out has its default.
+ */
+export interface Evolve {
+  type: "evolve";
+  id: number;
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Pause a run, let it go on, end it, or change parameters from the next generation on.
+ */
+export interface SteerRun {
+  type: "steer_run";
+  id: number;
+  what: "pause" | "continue" | "stop" | "change";
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Show a parent or an individual of the run instead of the design, or the design again.
+ */
+export interface Look {
+  type: "look";
+  id: number;
+  /**
+   * None: the design.
+   */
+  generation: number | null;
+  /**
+   * None: the parent that the generation chose.
+   */
+  individual: number | null;
+}
+/**
+ * Show the parent of the newest generation for as long as the run goes on, or no longer.
+ */
+export interface Follow {
+  type: "follow";
+  id: number;
+  on: boolean;
+}
+/**
+ * Make what is looked at the design.
+ */
+export interface Reinstate {
+  type: "reinstate";
+  id: number;
+}
+/**
+ * Hold a node somewhere for as long as it is dragged.
+ */
+export interface Hold {
+  type: "hold";
+  node: string;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  position: number[];
+}
+/**
+ * Let the dragged node go.
+ */
+export interface Release {
+  type: "release";
+}
+/**
+ * A frame of motion was drawn; the engine may send another.
+ */
+export interface Received {
+  type: "received";
+}
+/**
+ * The document as it is now.
+ */
+export interface DocumentState {
+  type: "document";
+  document: string;
+  name: string;
+  /**
+   * The design file that saving writes.
+   */
+  file: string | null;
+  /**
+   * Whether that file holds the document as it is now.
+   */
+  saved: boolean;
+  method: string;
+  /**
+   * Revision of the net.
+   */
+  revision: number;
+  /**
+   * Actions done.
+   */
+  position: number;
+  /**
+   * Actions that are done or can be redone.
+   */
+  length: number;
+  /**
+   * The actions round the position, in order.
+   */
+  history: HistoryLine[];
+  figures: Figures;
+  /**
+   * Figures before the last action; None at the start.
+   */
+  before: Figures | null;
+  anchors: AnchorState[];
+  cell_types: CellTypeChoice[];
+  framework: {
+    [k: string]: unknown;
+  };
+  stiffness: number;
+  ring_factor: number;
+  /**
+   * What is shown instead of the design; figures and net are of that.
+   */
+  looking: Looked | null;
+}
+/**
+ * One action of the history.
+ */
+export interface HistoryLine {
+  label: string;
+  /**
+   * Actions done once this one is, from 1.
+   */
+  number: number;
+}
+/**
+ * Measures of the net at equilibrium.
+ */
+export interface Figures {
+  springs: number;
+  nodes: number;
+  cells: number;
+  force_differential: number | null;
+  force_min: number;
+  force_max: number;
+  force_mean: number;
+  total_length: number;
+  area: number;
+  shortest_spring: number;
+  converged: boolean;
+  reason: string;
+}
+/**
+ * An anchor as the design file holds it.
+ */
+export interface AnchorState {
+  name: string;
+  node: string;
+  /**
+   * @minItems 3
+   * @maxItems 3
+   */
+  position: number[];
+}
+/**
+ * A cell type that the method allows.
+ */
+export interface CellTypeChoice {
+  word: string;
+  name: string;
+}
+/**
+ * A parent or an individual that is shown instead of the design.
+ */
+export interface Looked {
+  generation: number;
+  individual: number | null;
+}
+/**
+ * The run of the document.
+ */
+export interface RunState {
+  type: "run";
+  status: "none" | "running" | "paused" | "ended" | "failed";
+  reason: string;
+  folder: string;
+  following: boolean;
+  parameters: {
+    [k: string]: unknown;
+  };
+  /**
+   * Generations made.
+   */
+  generations: number;
+  /**
+   * Generation of the first row; earlier ones are as they were told before.
+   */
+  first: number;
+  rows: GenerationRow[];
+}
+/**
+ * What a generation gave: its parent now, and the force differentials of its individuals.
+ */
+export interface GenerationRow {
+  generation: number;
+  springs: number;
+  force_differential: number | null;
+  suf: number | null;
+  /**
+   * Individual that became parent; None: the parent stayed.
+   */
+  winner: number | null;
+  least: number | null;
+  /**
+   * First quartile.
+   */
+  low: number | null;
+  median: number | null;
+  /**
+   * Third quartile.
+   */
+  high: number | null;
+  /**
+   * Parameters were changed after it.
+   */
+  changed: boolean;
+}
+/**
+ * First message to a window.
+ */
+export interface Welcome {
+  type: "welcome";
+  /**
+   * Hash of these declarations; a window of another protocol must be loaded anew.
+   */
+  protocol: string;
+  version: string;
+}
+/**
+ * Answer to a request.
+ */
+export interface Reply {
+  type: "reply";
+  id: number;
+  /**
+   * What is wrong and what to do; None: it was done.
+   */
+  problem: string | null;
+  /**
+   * Cells that the action made or changed.
+   */
+  cells: string[];
+}
+/**
+ * Something went wrong that no request asked for.
+ */
+export interface Problem {
+  type: "problem";
+  message: string;
+}
+/**
+ * A net, as what differs from an earlier one.
+ */
+export interface NetHeader {
+  frame: "net";
+  revision: number;
+  /**
+   * Revision that runs refer to; None: there are no runs.
+   */
+  base: number | null;
+  parts: string[];
+  anchor_names: string[];
+  /**
+   * Of new nodes.
+   */
+  node_keys: string[];
+  /**
+   * Of new cells.
+   */
+  addresses: string[];
+  /**
+   * Of new cells.
+   */
+  types: string[];
+  arrays: ArrayHeader[];
+}
+/**
+ * One array of a frame.
+ */
+export interface ArrayHeader {
+  name: string;
+  type: "float32" | "int32" | "uint8";
+  length: number;
+}
+/**
+ * Where the net is, and what its springs carry.
+ */
+export interface MotionHeader {
+  frame: "motion";
+  /**
+   * Revision of the net that the arrays belong to.
+   */
+  revision: number;
+  /**
+   * Steps made since the net was last disturbed.
+   */
+  steps: number;
+  running: boolean;
+  /**
+   * Nothing will move until something changes.
+   */
+  settled: boolean;
+  converged: boolean;
+  /**
+   * Largest force out of balance over the mean spring force; None if it is undefined.
+   */
+  residual: number | null;
+  reason: string;
+  /**
+   * Nodes that are dragged.
+   */
+  held: number[];
+  arrays: ArrayHeader[];
+}
+/**
+ * Springs and force differentials of all individuals from a generation on.
+ */
+export interface TableHeader {
+  frame: "table";
+  /**
+   * Generation of the first individual.
+   */
+  first: number;
+  population: number;
+  arrays: ArrayHeader[];
+}
+/**
+ * What can be opened.
+ */
+export interface Shelf {
+  scenes: SceneEntry[];
+  documents: DocumentEntry[];
+}
+/**
+ * A packaged scene.
+ */
+export interface SceneEntry {
+  name: string;
+  description: string;
+}
+/**
+ * A document that was worked on before.
+ */
+export interface DocumentEntry {
+  id: string;
+  name: string;
+  file: string | null;
+  /**
+   * Seconds since 1970.
+   */
+  changed: number;
+  open: boolean;
+}
+/**
+ * Ask for a new document from a scene or a design file.
+ */
+export interface Opening {
+  source: string;
+}
+/**
+ * The document that was opened.
+ */
+export interface Opened {
+  id: string;
+}
+/**
+ * Why something that was fetched is refused.
+ */
+export interface Refusal {
+  problem: string;
+}

@@ -1,0 +1,157 @@
+// From pointer events on the canvas to the tool in the hand; what the tool leaves alone moves the eye.
+import { store, type ToolId } from "../document/store";
+import type { Hit } from "../viewport/picking";
+import type { Viewport } from "../viewport/scene";
+import { Brushing } from "./brushing";
+import { Pulling } from "./pulling";
+import { Adding, Cutting } from "./springs";
+import type { Pointer, Tool } from "./tool";
+
+const CLICK_REACH = 4; // px
+
+/** Tells the tool what the pointer does. */
+export class Hands {
+  private readonly tools: Record<ToolId, Tool> = {
+    pull: new Pulling(),
+    subdivide: new Brushing(),
+    cut: new Cutting(),
+    add: new Adding(),
+  };
+  private press: { x: number; y: number; hit: Hit | null; taken: boolean; far: boolean } | null =
+    null;
+  private last: Pointer | null = null;
+  private asked = 0;
+  private readonly ends: (() => void)[] = [];
+
+  constructor(
+    private readonly viewport: Viewport,
+    private readonly canvas: HTMLCanvasElement,
+  ) {
+    this.listen(canvas, "pointerdown", (event) => this.down(event), true);
+    this.listen(canvas, "pointermove", (event) => this.move(event));
+    this.listen(canvas, "pointerup", (event) => this.up(event), true);
+    this.listen(canvas, "pointercancel", () => this.cancel());
+    this.listen(canvas, "pointerleave", () => this.leave());
+    this.listen(window, "keydown", (event) => this.key(event));
+    this.listen(window, "keyup", (event) => this.key(event));
+    const stop = store.subscribe(({ tool }, before) => {
+      if (tool === before.tool) return;
+      this.tools[before.tool].cancel(this.viewport);
+      this.canvas.style.cursor = this.tools[tool].cursor;
+    });
+    this.ends.push(stop);
+  }
+
+  /** What lies under a point of the page, whatever the tool. */
+  under(event: { clientX: number; clientY: number }): Hit | null {
+    const { x, y } = this.place(event);
+    return this.viewport.pick(x, y, { nodes: true, springs: true, cells: true });
+  }
+
+  cancel(): void {
+    this.tool.cancel(this.viewport);
+    this.press = null;
+    this.viewport.eye.controls.enabled = true;
+  }
+
+  dispose(): void {
+    for (const end of this.ends) end();
+    cancelAnimationFrame(this.asked);
+  }
+
+  private get tool(): Tool {
+    return this.tools[store.getState().tool];
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    const pointer = this.pointer(event);
+    const hit = this.viewport.pick(pointer.x, pointer.y, this.tool.reach);
+    const taken = this.tool.down(this.viewport, hit, pointer);
+    this.press = { x: pointer.x, y: pointer.y, hit, taken, far: false };
+    this.viewport.eye.controls.enabled = !taken;
+    if (taken) this.canvas.setPointerCapture(event.pointerId);
+    store.setState({ hover: null });
+  }
+
+  private move(event: PointerEvent): void {
+    this.last = this.pointer(event);
+    this.asked ||= requestAnimationFrame(() => {
+      this.asked = 0;
+      if (this.last) this.moved(this.last);
+    });
+  }
+
+  private moved(pointer: Pointer): void {
+    const { press } = this;
+    if (press) {
+      press.far ||= Math.hypot(pointer.x - press.x, pointer.y - press.y) > CLICK_REACH;
+      if (press.taken && press.far) {
+        this.tool.drag(
+          this.viewport,
+          this.viewport.pick(pointer.x, pointer.y, this.tool.reach),
+          pointer,
+        );
+      }
+      return;
+    }
+    const hit = this.viewport.pick(pointer.x, pointer.y, this.tool.reach);
+    const { hover } = store.getState();
+    if (hit?.kind !== hover?.kind || hit?.row !== hover?.row || hit) {
+      store.setState({ hover: hit ? { ...hit, x: pointer.x, y: pointer.y } : null });
+    }
+    this.tool.hover(this.viewport, hit, pointer);
+  }
+
+  private up(event: PointerEvent): void {
+    const { press } = this;
+    if (!press || event.button !== 0) return;
+    const pointer = this.pointer(event);
+    this.press = null;
+    this.viewport.eye.controls.enabled = true;
+    const far = press.far || Math.hypot(pointer.x - press.x, pointer.y - press.y) > CLICK_REACH;
+    if (far && press.taken) {
+      this.tool.drag(
+        this.viewport,
+        this.viewport.pick(pointer.x, pointer.y, this.tool.reach),
+        pointer,
+      );
+      this.tool.drop(this.viewport, pointer);
+    } else if (!far) {
+      this.tool.click(this.viewport, press.hit, pointer);
+    }
+  }
+
+  private leave(): void {
+    this.last = null;
+    if (!this.press) store.setState({ hover: null });
+  }
+
+  /** Shift and Ctrl change where a drag leads, even if the pointer rests. */
+  private key(event: KeyboardEvent): void {
+    if (event.key === "Escape" && event.type === "keydown") this.cancel();
+    if (!this.press?.taken || !this.press.far || !this.last) return;
+    this.last = { ...this.last, shift: event.shiftKey, control: event.ctrlKey || event.metaKey };
+    this.tool.drag(this.viewport, null, this.last);
+  }
+
+  private place(event: { clientX: number; clientY: number }): { x: number; y: number } {
+    const box = this.canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+
+  private pointer(event: PointerEvent): Pointer {
+    const control = event.ctrlKey || event.metaKey;
+    return { ...this.place(event), shift: event.shiftKey, control };
+  }
+
+  private listen<K extends keyof HTMLElementEventMap>(
+    target: HTMLElement | Window,
+    name: K,
+    handle: (event: HTMLElementEventMap[K]) => void,
+    capture = false,
+  ): void {
+    target.addEventListener(name, handle as EventListener, capture);
+    this.ends.push(() => target.removeEventListener(name, handle as EventListener, capture));
+  }
+}

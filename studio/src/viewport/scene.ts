@@ -1,0 +1,387 @@
+// The viewport: what the document holds and how it is to be seen, drawn on a canvas when either changes.
+import * as THREE from "three";
+import { type Colouring, colouringOf } from "../document/colouring";
+import { positionOf } from "../document/motion";
+import { groupOf, type Net } from "../document/net";
+import { type Colour, kindColour } from "../document/palettes";
+import { plainType } from "../document/quantities";
+import { selectedRows } from "../document/selection";
+import { type State, store } from "../document/store";
+import { Eye, type StandardView } from "./camera";
+import { Hairlines } from "./hairlines";
+import { type Hit, Projection, pick } from "./picking";
+import { type Disc, Discs } from "./points";
+import { Ribbons } from "./ribbons";
+import { Skin } from "./skin";
+
+const GROUND: Record<State["theme"], string> = { dark: "#0e1117", light: "#f6f7f9" };
+const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22, 26, 33] };
+const ANCHOR: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [30, 36, 45] };
+const ARROW: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+
+/** Widths of springs [px]. */
+const WIDTH = 1.6;
+const THINNEST = 0.7;
+const THICKEST = 5;
+const SELECTED_WIDTH = 3.4;
+
+/** Springs that a software rasteriser draws as ribbons once nothing moves. */
+const STILL_RIBBONS = 12_000;
+const STILL_AFTER = 180; // ms
+
+/** Length of the longest reaction arrow over the radius of the net. */
+const ARROW_SHARE = 0.28;
+
+// Colours are given as they are shown; nothing here is lit.
+THREE.ColorManagement.enabled = false;
+
+/** Draws what the store holds; made once for a canvas. */
+export class Viewport {
+  readonly eye: Eye;
+  /** Told after every drawing, for what lies over the canvas. */
+  onDraw: () => void = () => {};
+  /** A line from a node to a place, such as a spring that is being added. */
+  rubber: { from: [number, number, number]; to: [number, number, number] } | null = null;
+  /** Cells under the brush. */
+  brushed = new Set<number>();
+  colouring: Colouring | null = null;
+  readonly software: boolean;
+
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly ribbons = new Ribbons();
+  private readonly hairlines = new Hairlines();
+  private readonly marked = new Ribbons({ lift: 0.0003, order: 2, haze: 0 });
+  private readonly arrows = new Ribbons({ lift: 0.0002, order: 2, haze: 0.2 });
+  private readonly skin = new Skin(0.16);
+  private readonly markedSkin = new Skin(0.34);
+  private readonly discs = new Discs();
+  private readonly ground = new THREE.Color();
+  private width = 1;
+  private height = 1;
+  private asked = 0;
+  private lastMove = 0;
+  private stillTimer = 0;
+  private fitted: string | null = null;
+  private drawnRevision = 0;
+  private dirty = true;
+  private projection: Projection | null = null;
+  private readonly stop: () => void;
+  private readonly observer: ResizeObserver;
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({
+      canvas,
+      antialias: true,
+      powerPreference: "high-performance",
+    });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this.software = isSoftware(this.renderer.getContext());
+    this.scene.fog = new THREE.Fog(0, 0, 1);
+    const { mesh } = this.ribbons;
+    this.scene.add(mesh, this.hairlines.lines, this.marked.mesh, this.arrows.mesh);
+    this.scene.add(this.skin.mesh, this.markedSkin.mesh, this.discs.points);
+    this.eye = new Eye(canvas, () => {
+      this.lastMove = performance.now();
+      this.redraw();
+    });
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(canvas.parentElement!);
+    this.resize();
+    this.stop = store.subscribe((state, before) => this.follow(state, before));
+    this.follow(store.getState(), null);
+  }
+
+  /** Draws at the next chance; `changed` says that it is not only the eye that moved. */
+  redraw(changed = false): void {
+    this.dirty ||= changed;
+    this.asked ||= requestAnimationFrame(() => this.draw());
+  }
+
+  /** Looks at the whole net. */
+  fit(view: StandardView | null = null): void {
+    const { motion } = store.getState();
+    if (!motion) return;
+    this.eye.measure(motion.positions);
+    this.eye.fit(view, true);
+    this.redraw();
+  }
+
+  /** What lies under a point of the canvas [px]. */
+  pick(x: number, y: number, kinds: Parameters<typeof pick>[4]): Hit | null {
+    const { net, motion } = store.getState();
+    if (!net || !motion) return null;
+    this.projection ??= new Projection(motion, this.eye.camera, this.width, this.height);
+    return pick(net, this.projection, x, y, kinds);
+  }
+
+  /** Where a place of the net is on the canvas [px]; null if it is behind the eye. */
+  project([x, y, z]: [number, number, number]): [number, number] | null {
+    const seen = new THREE.Vector3(x, y, z).project(this.eye.camera);
+    if (seen.z > 1) return null;
+    return [(seen.x + 1) * 0.5 * this.width, (1 - seen.y) * 0.5 * this.height];
+  }
+
+  /** The ray through a point of the canvas [px]. */
+  ray(x: number, y: number): THREE.Ray {
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(
+      new THREE.Vector2((x / this.width) * 2 - 1, 1 - (y / this.height) * 2),
+      this.eye.camera,
+    );
+    return caster.ray;
+  }
+
+  /** The picture as a PNG, with ribbons however slow they are. */
+  async picture(): Promise<Blob> {
+    this.render(true);
+    return new Promise((resolve, reject) => {
+      this.canvas.toBlob((blob) =>
+        blob ? resolve(blob) : reject(new Error("the picture can't be made")),
+      );
+    });
+  }
+
+  dispose(): void {
+    this.stop();
+    this.observer.disconnect();
+    cancelAnimationFrame(this.asked);
+    clearTimeout(this.stillTimer);
+    for (const part of [
+      this.ribbons,
+      this.hairlines,
+      this.marked,
+      this.arrows,
+      this.skin,
+      this.markedSkin,
+      this.discs,
+    ]) {
+      part.dispose();
+    }
+    this.eye.dispose();
+    this.renderer.dispose();
+  }
+
+  private follow(state: State, before: State | null): void {
+    if (state.motion !== before?.motion && state.motion) {
+      if (before?.motion) this.lastMove = performance.now();
+      if (this.fitted !== state.document?.document) {
+        this.fitted = state.document?.document ?? null;
+        this.eye.measure(state.motion.positions);
+        this.eye.fit("perspective", false);
+      }
+    }
+    const seen: (keyof State)[] = ["motion", "selection", "hover", "view", "theme", "document"];
+    if (!before || seen.some((key) => state[key] !== before[key])) this.redraw(true);
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas.parentElement!;
+    this.width = Math.max(1, clientWidth);
+    this.height = Math.max(1, clientHeight);
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(this.width, this.height, false);
+    this.eye.resize(this.width, this.height);
+    this.redraw(true);
+  }
+
+  private draw(): void {
+    this.asked = 0;
+    const gliding = this.eye.update();
+    const { motion } = store.getState();
+    const still = performance.now() - this.lastMove > STILL_AFTER && !gliding;
+    clearTimeout(this.stillTimer);
+    this.render(!this.software || still);
+    if (gliding) {
+      this.lastMove = performance.now();
+      this.redraw();
+    } else if (this.software && !still) {
+      this.stillTimer = window.setTimeout(() => this.redraw(), STILL_AFTER + 20);
+    }
+    if (motion) this.onDraw();
+  }
+
+  private render(fine: boolean): void {
+    const state = store.getState();
+    const { net, motion, theme } = state;
+    this.projection = null;
+    this.ground.set(GROUND[theme]);
+    this.renderer.setClearColor(this.ground);
+    const haze = this.eye.haze();
+    const fog = this.scene.fog as THREE.Fog;
+    fog.color.copy(this.ground);
+    // A hairline has no width to be thinned by distance, so the haze is weaker.
+    fog.near = haze.x;
+    fog.far = haze.y + 0.6 * (haze.y - haze.x);
+    const scale = this.renderer.getPixelRatio();
+    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
+    for (const ribbons of [this.ribbons, this.marked, this.arrows])
+      ribbons.fit(size.x, size.y, scale, this.ground, haze);
+    this.discs.fit(scale, this.ground);
+    const current = net && motion && motion.header.revision === net.revision;
+    if (current && (this.dirty || this.drawnRevision !== net.revision)) {
+      this.update(state, net, motion);
+      this.drawnRevision = net.revision;
+      this.dirty = false;
+    }
+    for (const child of this.scene.children) child.visible &&= this.drawnRevision > 0;
+    const ribbons = fine && (!this.software || (net?.ends.length ?? 0) / 2 <= STILL_RIBBONS);
+    this.ribbons.mesh.visible = ribbons && this.drawnRevision > 0;
+    this.hairlines.lines.visible = !ribbons && this.drawnRevision > 0;
+    if (current) this.updateArrows(state, motion);
+    this.renderer.render(this.scene, this.eye.camera);
+  }
+
+  private update(state: State, net: Net, motion: NonNullable<State["motion"]>): void {
+    const { view, theme } = state;
+    this.colouring = colouringOf(net, motion, view.colour, theme);
+    const count = net.ends.length / 2;
+    const ends = endsOf(net, motion.positions);
+    const widths = view.thickness ? widthsOf(motion.forces) : WIDTH;
+    this.ribbons.set(count, ends, this.colouring.colours, widths);
+    this.hairlines.set(count, ends, this.colouring.colours);
+    this.updateMarks(state, net, ends);
+    this.updateSkin(state, net, motion);
+    this.discs.set(discsOf(state, net, motion));
+  }
+
+  private updateMarks(
+    { selection, hover, theme, motion }: State,
+    net: Net,
+    ends: Float32Array,
+  ): void {
+    const springs = new Set(selectedRows(net, selection, "springs"));
+    for (const cell of selectedRows(net, selection, "cells")) {
+      for (const spring of groupOf(net.own, cell)) springs.add(spring);
+    }
+    const chosen = [...springs];
+    const lit = hover?.kind === "spring" && !springs.has(hover.row) ? hover.row : -1;
+    if (lit >= 0) chosen.push(lit);
+    const count = chosen.length + (this.rubber && motion ? 1 : 0);
+    const places = new Float32Array(6 * count);
+    const colours = new Uint8Array(3 * count);
+    const widths = new Float32Array(count);
+    chosen.forEach((spring, at) => {
+      places.set(ends.subarray(6 * spring, 6 * spring + 6), 6 * at);
+      colours.set(INK[theme], 3 * at);
+      widths[at] =
+        spring === lit ? SELECTED_WIDTH + 0.6 : selection.kind === "springs" ? SELECTED_WIDTH : 2.2;
+    });
+    if (this.rubber && motion) {
+      places.set([...this.rubber.from, ...this.rubber.to], 6 * chosen.length);
+      colours.set(MARK[theme], 3 * chosen.length);
+      widths[chosen.length] = 2.4;
+    }
+    this.marked.set(count, places, colours, widths);
+  }
+
+  private updateArrows({ view, theme }: State, motion: NonNullable<State["motion"]>): void {
+    const { net } = store.getState();
+    if (!view.reactions || !net) {
+      this.arrows.set(0, new Float32Array(), new Uint8Array(), 0);
+      return;
+    }
+    const arrows = arrowsOf(net, motion, this.eye.radius * ARROW_SHARE, this.eye.camera.position);
+    const count = arrows.length / 6;
+    const colours = new Uint8Array(3 * count);
+    for (let line = 0; line < count; line++) colours.set(ARROW[theme], 3 * line);
+    this.arrows.set(count, arrows, colours, 2.2);
+  }
+
+  private updateSkin(
+    { view, selection, theme, hover }: State,
+    net: Net,
+    motion: NonNullable<State["motion"]>,
+  ): void {
+    const all = net.addresses.keys();
+    if (view.cells) this.skin.set(net, motion, all, cellColours(net, view.colour.by, theme));
+    else this.skin.clear();
+    const cells = new Set([...selectedRows(net, selection, "cells"), ...this.brushed]);
+    if (hover?.kind === "cell") cells.add(hover.row);
+    const chosen = new Set(selectedRows(net, selection, "cells"));
+    this.markedSkin.set(net, motion, cells, (cell) =>
+      this.brushed.has(cell) ? MARK[theme] : chosen.has(cell) ? INK[theme] : MARK[theme],
+    );
+  }
+}
+
+function isSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {
+  const info = context.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+function endsOf(net: Net, positions: Float32Array): Float32Array {
+  const ends = new Float32Array(3 * net.ends.length);
+  for (let end = 0; end < net.ends.length; end++) {
+    const node = 3 * net.ends[end];
+    ends[3 * end] = positions[node];
+    ends[3 * end + 1] = positions[node + 1];
+    ends[3 * end + 2] = positions[node + 2];
+  }
+  return ends;
+}
+
+function widthsOf(forces: Float32Array): Float32Array {
+  let largest = 0;
+  for (const force of forces) largest = Math.max(largest, Math.abs(force));
+  return forces.map(
+    (force) => THINNEST + (THICKEST - THINNEST) * (largest > 0 ? Math.abs(force) / largest : 0),
+  );
+}
+
+function discsOf({ view, selection, hover, theme, motion }: State, net: Net, _: unknown): Disc[] {
+  const discs: Disc[] = [];
+  const add = (node: number, colour: Colour, size: number) =>
+    discs.push({ at: positionOf(motion!, node), colour, size });
+  const anchors = new Set(net.anchors);
+  if (view.nodes) {
+    for (let node = 0; node < net.nodes.length; node++)
+      if (!anchors.has(node)) add(node, INK[theme], 5);
+  }
+  if (view.anchors) for (const node of net.anchors) add(node, ANCHOR[theme], 10);
+  for (const node of selectedRows(net, selection, "nodes")) add(node, MARK[theme], 12);
+  if (hover?.kind === "node") add(hover.row, MARK[theme], anchors.has(hover.row) ? 13 : 10);
+  for (const node of motion!.header.held) add(node, MARK[theme], 13);
+  return discs;
+}
+
+/** Arrows that pull at the anchors as the supports do: shafts and two barbs each, spread before the eye. */
+function arrowsOf(
+  net: Net,
+  { positions, reactions }: NonNullable<State["motion"]>,
+  longest: number,
+  eye: THREE.Vector3,
+): Float32Array {
+  let largest = 0;
+  const count = net.anchors.length;
+  for (let at = 0; at < 3 * count; at += 3) {
+    largest = Math.max(largest, Math.hypot(reactions[at], reactions[at + 1], reactions[at + 2]));
+  }
+  const lines = new Float32Array(18 * count);
+  const side = new THREE.Vector3();
+  for (let anchor = 0; anchor < count; anchor++) {
+    const from = new THREE.Vector3().fromArray(positions, 3 * net.anchors[anchor]);
+    const force = new THREE.Vector3().fromArray(reactions, 3 * anchor);
+    const direction = force.clone().normalize();
+    const length = largest > 0 ? (force.length() / largest) * longest : 0;
+    const tip = from.clone().addScaledVector(direction, length);
+    const head = Math.min(0.3 * length, 0.16 * longest);
+    side.crossVectors(direction, eye.clone().sub(tip)).normalize();
+    const back = tip.clone().addScaledVector(direction, -head);
+    const barbs = [1, -1].map((sign) => back.clone().addScaledVector(side, 0.5 * sign * head));
+    lines.set([...from, ...tip, ...tip, ...barbs[0], ...tip, ...barbs[1]], 18 * anchor);
+  }
+  return lines;
+}
+
+function cellColours(net: Net, by: string, theme: State["theme"]): (cell: number) => Colour {
+  const words = [...new Set(net.types.map(plainType))].sort();
+  const deepest = net.cellLevel.reduce((a, b) => Math.max(a, b), 0) + 1;
+  if (by === "level") return (cell) => kindColour(net.cellLevel[cell], deepest, theme, true);
+  if (by === "part")
+    return (cell) => kindColour(net.cellPart[cell], net.parts.length, theme, false);
+  return (cell) =>
+    kindColour(words.indexOf(plainType(net.types[cell])), words.length, theme, false);
+}

@@ -1,0 +1,98 @@
+// Panels, keys and menus: all can be reached without a mouse, and by screen readers.
+import AxeBuilder from "@axe-core/playwright";
+import type { Page } from "@playwright/test";
+import { anchorPlace, converged, documentOf, expect, test } from "./studio";
+
+async function accessible(page: Page): Promise<void> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  expect(
+    serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(", ")}`),
+  ).toEqual([]);
+}
+
+test("no panel has serious findings of axe, dark or light", async ({ page, open }) => {
+  await open();
+  await page.locator(".scenes button").first().waitFor();
+  await accessible(page);
+  await page.getByRole("button", { name: /^three cylinders A trunk/ }).click();
+  await converged(page);
+  for (const theme of ["dark", "light"]) {
+    for (const panel of ["Net", "Cells", "Framework", "Evolve", "History"]) {
+      await page.getByRole("tab", { name: panel }).click();
+      await accessible(page);
+    }
+    await page.getByRole("button", { name: "Scale and palette" }).click();
+    await accessible(page);
+    await page.keyboard.press("Escape");
+    await page.locator("main.viewport canvas").focus();
+    for (const key of ["?", "Control+k", "Control+s"]) {
+      await page.keyboard.press(key);
+      await page.getByRole("dialog").waitFor();
+      await accessible(page);
+      await page.keyboard.press("Escape");
+    }
+    if (theme === "dark") await page.keyboard.press("d");
+  }
+});
+
+test("the framework is changed by form, and what is refused says why", async ({ page, open }) => {
+  await open("one-cylinder");
+  const before = (await documentOf(page)).figures;
+  await page.getByRole("tab", { name: "Framework" }).click();
+  const level = page.getByLabel("Level: every cell subdivided");
+  await level.fill("1");
+  await level.press("Enter");
+  await page.getByRole("button", { name: "Apply" }).click();
+  await expect
+    .poll(async () => (await documentOf(page)).figures.springs)
+    .toBeGreaterThan(2 * before.springs);
+  await converged(page);
+  const along = page.getByLabel("along", { exact: true });
+  await along.fill("12");
+  await along.press("Enter");
+  const around = page.getByLabel("around", { exact: true });
+  await around.fill("3");
+  await around.press("Enter");
+  await page.getByRole("button", { name: "Apply" }).click();
+  // Anchors stand on vertices that a ring of three does not have.
+  await expect(page.locator(".apply .problem")).toContainText("framework.anchors");
+  expect((await documentOf(page)).position).toBe(1);
+  await around.fill("24");
+  await around.press("Enter");
+  await page.getByRole("button", { name: "Apply" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  await page.getByRole("button", { name: "Undo", exact: true }).click();
+  await page.getByRole("button", { name: "Undo", exact: true }).click();
+  await expect.poll(async () => (await documentOf(page)).figures).toEqual(before);
+});
+
+test("commands are found by name, and the menu by the right button", async ({ page, open }) => {
+  await open("one-cylinder");
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+k");
+  await page.keyboard.type("seek stress, one");
+  await page.keyboard.press("Enter");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await converged(page);
+  const place = await anchorPlace(page, "A1");
+  await page.mouse.click(place.x, place.y, { button: "right" });
+  await page.getByRole("menuitem", { name: /^Let the anchor go/ }).click();
+  await expect.poll(async () => (await documentOf(page)).anchors.length).toBe(7);
+  await page.getByRole("tab", { name: "History" }).click();
+  await page.getByRole("button", { name: "Start", exact: true }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(0);
+});
+
+test("a document is saved as a file", async ({ page, open, home }) => {
+  await open("one-cylinder");
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+s");
+  const path = page.getByLabel("Path on this machine");
+  await path.fill(`${home}/no/such/folder/net.toml`);
+  await page.getByRole("button", { name: "Save", exact: true }).click();
+  await expect(page.getByRole("dialog").getByRole("alert")).toContainText("does not exist");
+  await path.fill(`${home}/net.toml`);
+  await page.getByRole("button", { name: "Save", exact: true }).click();
+  await expect(page.locator(".title")).toContainText("saved as net.toml");
+});

@@ -1,0 +1,93 @@
+// Takes the pictures of the documentation: every panel and state, into docs/pictures/studio.
+import { join } from "node:path";
+import type { Page } from "@playwright/test";
+import { anchorPlace, clickCellAbove, converged, test } from "./studio";
+
+const FOLDER = join(import.meta.dirname, "../../docs/pictures/studio");
+
+async function take(page: Page, name: string): Promise<void> {
+  // Until nothing moves, and what moved is drawn with its full width.
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(FOLDER, `${name}.png`) });
+}
+
+test("start", async ({ page, open }) => {
+  await open();
+  await page.waitForTimeout(1500);
+  await take(page, "start");
+});
+
+test("net", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.move(anchor.x - 9, anchor.y - 34);
+  await take(page, "spring");
+  await clickCellAbove(page, anchor);
+  await page.keyboard.press("s");
+  await page.getByRole("heading", { name: "4 cells" }).waitFor();
+  await converged(page);
+  await take(page, "subdivided");
+  await page.getByRole("tab", { name: "Cells" }).click();
+  await take(page, "cells");
+  await page.getByRole("tab", { name: "Net" }).click();
+  await page.getByRole("button", { name: "10 steps" }).click();
+  await converged(page);
+  await page.getByRole("tab", { name: "History" }).click();
+  await take(page, "history");
+  await page.keyboard.press("Escape");
+  await page.getByLabel("Colour springs by").selectOption("level");
+  for (const key of ["c", "t", "w"]) await page.keyboard.press(key);
+  await take(page, "skin");
+});
+
+test("hands", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchor = await anchorPlace(page, "A9");
+  await page.mouse.move(anchor.x, anchor.y);
+  await page.mouse.down();
+  await page.mouse.move(anchor.x - 60, anchor.y - 90, { steps: 6 });
+  await page.waitForTimeout(1200);
+  await take(page, "pulling");
+  await page.mouse.up();
+  await page.mouse.move(640, 300);
+  await page.mouse.click(640, 300, { button: "right" });
+  await take(page, "menu");
+});
+
+test("overlays", async ({ page, open }) => {
+  await open("one-cylinder-quad");
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+k");
+  await take(page, "palette");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("?");
+  await take(page, "keys");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Control+s");
+  await take(page, "save");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("d");
+  await page.getByRole("button", { name: "Scale and palette" }).click();
+  await take(page, "light");
+});
+
+test("evolution", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await take(page, "evolve-start");
+  await page.getByRole("button", { name: "Evolve", exact: true }).click();
+  await page.waitForTimeout(4000);
+  await take(page, "evolving");
+  await page.getByText("ended").waitFor({ timeout: 120_000 });
+  await page.getByRole("button", { name: "Pictures" }).click();
+  await page.waitForTimeout(2500);
+  await page.locator(".gallery-cell").nth(2).click();
+  await page.waitForTimeout(1500);
+  await take(page, "gallery");
+});
+
+test("framework", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Framework" }).click();
+  await take(page, "framework");
+});

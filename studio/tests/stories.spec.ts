@@ -1,0 +1,208 @@
+// What people come to do, from the first click to the document that is left.
+import type { Page } from "@playwright/test";
+import { PNG } from "pngjs";
+import {
+  anchorPlace,
+  clickCellAbove,
+  converged,
+  documentOf,
+  expect,
+  startStudio,
+  test,
+} from "./studio";
+
+/** Colours of the picture, and the share of it that is not ground. */
+async function picture(page: Page): Promise<{ colours: number; lit: number; hash: number }> {
+  const { data, width } = PNG.sync.read(await page.locator("main.viewport").screenshot());
+  const pixels = new Uint32Array(data.buffer, data.byteOffset, data.length / 4);
+  const ground = pixels[40 * width + 10];
+  let lit = 0;
+  let hash = 0;
+  for (const pixel of pixels) {
+    if (pixel !== ground) lit++;
+    hash = (Math.imul(hash, 31) + pixel) | 0;
+  }
+  return { colours: new Set(pixels).size, lit: lit / pixels.length, hash };
+}
+
+async function drag(
+  page: Page,
+  from: { x: number; y: number },
+  dx: number,
+  dy: number,
+): Promise<void> {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let step = 1; step <= 8; step++)
+    await page.mouse.move(from.x + (dx * step) / 8, from.y + (dy * step) / 8);
+  await page.waitForTimeout(120);
+  await page.mouse.up();
+}
+
+test("a designer pulls a net from the start page, and undoes it", async ({ page, open }) => {
+  await open();
+  await page.getByRole("button", { name: /^three cylinders A trunk/ }).click();
+  await converged(page);
+  const before = await documentOf(page);
+  const drawn = await picture(page);
+  expect(drawn.colours).toBeGreaterThan(500);
+  expect(drawn.lit).toBeGreaterThan(0.03);
+  const most = await page.getByTestId("legend-high").textContent();
+
+  const a7 = before.anchors.find(({ name }) => name === "A7")!;
+  await page.keyboard.down("Shift");
+  await drag(page, await anchorPlace(page, "A7"), 25, -90);
+  await page.keyboard.up("Shift");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await converged(page);
+  const moved = (await documentOf(page)).anchors.find(({ name }) => name === "A7")!;
+  expect(moved.position[0]).toBe(a7.position[0]);
+  expect(moved.position[1]).toBe(a7.position[1]);
+  expect(moved.position[2]).toBeGreaterThan(a7.position[2] + 0.2);
+  await expect(page.getByTestId("legend-high")).not.toHaveText(most!);
+  expect((await picture(page)).hash).not.toBe(drawn.hash);
+
+  // To the millimetre, by typing.
+  await page.mouse.move(500, 780);
+  const place = await anchorPlace(page, "A7");
+  await page.mouse.click(place.x, place.y);
+  const z = page.getByRole("textbox", { name: "z" });
+  await z.fill(String(a7.position[2] + 0.5));
+  await z.press("Enter");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  await converged(page);
+  expect(
+    (await documentOf(page)).anchors.find(({ name }) => name === "A7")!.position[2],
+  ).toBeCloseTo(a7.position[2] + 0.5, 9);
+
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Control+z");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(0);
+  expect((await documentOf(page)).anchors).toEqual(before.anchors);
+  await page.keyboard.press("Control+Shift+z");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await page.reload();
+  await converged(page);
+  expect((await documentOf(page)).position).toBe(1);
+  await expect(page.getByTestId("legend-high")).not.toHaveText(most!);
+});
+
+test("an architect relieves an anchor cell by cell", async ({ page, open }) => {
+  await open("three-cylinders");
+  const before = await documentOf(page);
+  // The strongest springs end at anchors; one lies on the way from an anchor into the net.
+  const canvas = page.locator("main.viewport canvas");
+  const box = (await canvas.boundingBox())!;
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.move(anchor.x - 8, anchor.y - 30);
+  const card = page.locator(".hover-card");
+  await expect(card).toContainText("Force");
+  await expect(card).toContainText("Rest length");
+  await expect(card).toContainText("F = k (L − r)");
+  await expect(card).toContainText(/0\.\d{3,} N/);
+
+  await clickCellAbove(page, anchor);
+  await expect(page.getByRole("heading", { name: /^Cell \d+$/ })).toBeVisible();
+  await page.keyboard.press("s");
+  await expect
+    .poll(async () => (await documentOf(page)).figures.springs)
+    .toBeGreaterThan(before.figures.springs);
+  await expect(page.getByRole("heading", { name: "4 cells" })).toBeVisible();
+  const divided = await documentOf(page);
+  await expect(
+    page.locator(".fact", { hasText: "Force differential" }).locator(".fact-change"),
+  ).toBeVisible();
+  await page.getByRole("combobox", { name: "Type", exact: true }).selectOption("6");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  const typed = await documentOf(page);
+  expect(typed.figures.springs).not.toBe(divided.figures.springs);
+
+  await page.getByRole("tab", { name: "Cells" }).click();
+  await expect(
+    page.getByRole("treeitem", { selected: true }).filter({ hasText: "type 6" }),
+  ).toHaveCount(4);
+  await page.getByRole("tab", { name: "Net" }).click();
+  await page.getByRole("button", { name: "Off", exact: true }).click();
+  await expect
+    .poll(async () => (await documentOf(page)).figures.springs)
+    .toBe(before.figures.springs);
+  await page.getByRole("button", { name: "On", exact: true }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(4);
+  expect((await documentOf(page)).figures.force_differential).toBeCloseTo(
+    typed.figures.force_differential!,
+    9,
+  );
+  expect(box.width).toBeGreaterThan(800);
+});
+
+test("springs are cut and added by hand", async ({ page, open }) => {
+  await open("one-cylinder-quad");
+  const before = (await documentOf(page)).figures.springs;
+  const anchor = await anchorPlace(page, "A1");
+  await page.keyboard.press("n");
+  await page.keyboard.press("a");
+  await page.mouse.click(anchor.x, anchor.y);
+  const other = await anchorPlace(page, "A5");
+  await page.mouse.move(other.x, other.y);
+  await page.mouse.click(other.x, other.y);
+  await expect.poll(async () => (await documentOf(page)).figures.springs).toBe(before + 1);
+  await converged(page);
+  await page.keyboard.press("x");
+  await page.mouse.click((anchor.x + other.x) / 2, (anchor.y + other.y) / 2);
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Control+z");
+  await expect.poll(async () => (await documentOf(page)).figures.springs).toBe(before);
+});
+
+test("form-finding pauses, steps, runs and starts anew", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("button", { name: "Pause form-finding" }).click();
+  const canvas = page.locator("main.viewport canvas");
+  await canvas.focus();
+  const before = await picture(page);
+  await page.getByRole("button", { name: "10 steps" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await expect(page.locator(".badge")).toHaveText("paused");
+  await page.getByRole("button", { name: "Make one step" }).click();
+  await expect(page.locator(".status-fact", { hasText: "step" })).toContainText("1");
+  await page.getByRole("button", { name: "Run form-finding" }).click();
+  await converged(page);
+  expect((await picture(page)).hash).not.toBe(before.hash);
+});
+
+test("two windows on one document stay the same", async ({ page, open, context }) => {
+  await open("one-cylinder");
+  const other = await context.newPage();
+  await other.goto(page.url());
+  await converged(other);
+  await page.getByRole("button", { name: "One step", exact: true }).click();
+  const label = (await documentOf(page)).history.at(-1)?.label ?? "";
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await other.getByRole("tab", { name: "History" }).click();
+  await expect(other.getByRole("listitem").last()).toContainText(label || "Seek stress");
+  await converged(other);
+  const counts = page.locator(".status-fact").last();
+  await expect(other.locator(".status-fact").last()).toHaveText((await counts.textContent())!);
+});
+
+test("a killed studio has lost nothing that was done", async ({ page, open, home }) => {
+  const studio = await open("one-cylinder");
+  await page.getByRole("button", { name: "One step", exact: true }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const before = await documentOf(page);
+  const { port, hash } = new URL(page.url());
+  await studio.kill();
+  await expect(page.locator(".line-state")).toContainText("does not answer");
+  const again = await startStudio(home, undefined, Number(port));
+  await page.goto(`${again.address}${hash}`);
+  await converged(page);
+  const after = await documentOf(page);
+  expect(after.figures).toEqual(before.figures);
+  expect(after.history).toEqual(before.history);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+z");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(0);
+  await again.kill();
+});
