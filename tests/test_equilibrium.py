@@ -42,7 +42,7 @@ def moved(network: sf.Network, seed: int) -> sf.Network:
     return sf.Network(positions, network.springs, network.fixed, stiffness=network.stiffness)
 
 
-# Cords with rest lengths and rods are no linear systems; closed forms and other engines check those.
+# Cords with rest lengths and rods are no linear systems; other engines check those.
 LINEAR = [name for name in sf.scene_names() if not sf.load(name).network().rest_length.any()]
 
 
