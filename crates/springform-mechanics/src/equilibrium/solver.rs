@@ -95,6 +95,10 @@ impl Solver {
         } else {
             let (positions, status, iterations, method) =
                 self.still(network, settings, &network.positions, &[], settings.iterations);
+            // Numbers overflowed: the start tells more than what is left of them.
+            let lost = positions.iter().flatten().any(|coordinate| !coordinate.is_finite());
+            let (positions, status) =
+                if lost { (network.positions.to_vec(), Status::Singular) } else { (positions, status) };
             Equilibrium { method, ..Equilibrium::at(network, positions, status, iterations) }
         };
         observe(Stage::Solve);
