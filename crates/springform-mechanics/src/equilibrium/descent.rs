@@ -11,7 +11,7 @@ use super::state::Settings;
 use super::supports::Supports;
 use super::tangent::{Layout, along, moduli, own_stiffness};
 use crate::network::Network;
-use crate::sparse::{Graph, Lanes, ScalarFactor};
+use crate::sparse::{Graph, Lanes, ScalarFactor, Symbolic};
 use crate::vector::length;
 use pulp::{Arch, NullaryFnOnce};
 use std::collections::VecDeque;
@@ -22,8 +22,11 @@ const MEMORY: usize = 2;
 /// Share of the stiffness across a spring in its weight; the rest is that along it.
 const ACROSS: f64 = 0.7;
 
-/// Stiffness of springs across their directions, as a share of that along them, that a descent needs.
+/// Stiffness of springs across their directions, as a share of that along them, that a descent to the end needs.
 const STRONG_PRESTRESS: f64 = 0.2;
+
+/// Time of a Newton step over that of a step of descent, per multiplication and entry of the scalar factor (measured).
+const NEWTON_PER_STEP: f64 = 3.0;
 
 /// Least weight of a spring as a share of its own stiffness.
 const LEAST_WEIGHT: f64 = 0.02;
@@ -94,13 +97,15 @@ impl Descent {
         let mut iterations = 0;
         self.spare.extend(self.pairs.drain(..));
         let first = residual;
-        while residual > settings.tolerance {
-            let lost = if iterations == 0 {
-                !self.weigh(hill, positions)
-            } else {
-                is_hopeless(iterations, residual / first)
-            };
-            if iterations >= limit || lost {
+        let (mut limit, mut weak) = (limit, false);
+        while residual > settings.tolerance && iterations < limit {
+            if iterations == 0 {
+                let Some(prestress) = self.weigh(hill, positions) else { break };
+                weak = prestress <= STRONG_PRESTRESS;
+                if weak {
+                    limit = limit.min(steps_for_shape(&hill.layout.symbolic));
+                }
+            } else if !weak && is_hopeless(iterations, residual / first) {
                 break;
             }
             let slope = self.aim(hill, &pulls);
@@ -115,9 +120,9 @@ impl Descent {
         Descended { converged: residual <= settings.tolerance, iterations }
     }
 
-    /// Factors the Laplacian of the springs' weights; false if it can't be, or if springs hold their nodes across far less
-    /// than along, so that no scalar tells the net's stiffness.
-    fn weigh(&mut self, hill: Hill<'_>, positions: &[Lanes]) -> bool {
+    /// Factors the Laplacian of the springs' weights, if it can be; the stiffness with which springs hold their nodes
+    /// across over that along. Where it is small no scalar tells the net's stiffness.
+    fn weigh(&mut self, hill: Hill<'_>, positions: &[Lanes]) -> Option<f64> {
         let Hill { network, supports, layout, .. } = hill;
         self.diagonal.clear();
         self.diagonal.resize(supports.nodes.len(), 0.0);
@@ -135,9 +140,7 @@ impl Descent {
                 self.diagonal[row as usize] += weight;
             }
         }
-        if held <= STRONG_PRESTRESS * stiff {
-            return false;
-        }
+        let prestress = if stiff > 0.0 { held / stiff } else { 0.0 };
         self.weights.resize(layout.ends.len(), 0.0);
         for (node, _) in &supports.partial {
             // Held in part: the metric holds it as a whole, about as well.
@@ -147,7 +150,8 @@ impl Descent {
             self.factor.lay_out(&layout.graph, &layout.symbolic);
             self.pattern = layout.pattern;
         }
-        self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights).is_ok()
+        let factored = self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights);
+        factored.is_ok().then_some(prestress)
     }
 
     /// The direction of the next step, by two loops over the pairs around the metric, and its slope.
@@ -209,6 +213,12 @@ impl Descent {
 
 /// Most shares of a direction that are tried.
 const MOST_SHARES: u32 = 12;
+
+/// Steps that are worth their time where prestress is weak: they find the shape, and Newton's steps, of which one costs
+/// as much as all of these, the digits.
+fn steps_for_shape(symbolic: &Symbolic) -> u32 {
+    (NEWTON_PER_STEP * symbolic.work() / symbolic.fill().max(1) as f64) as u32
+}
 
 /// After so many steps the residual should have fallen to a smaller share of the first.
 fn is_hopeless(iterations: u32, share: f64) -> bool {
