@@ -7,6 +7,7 @@ import re
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from .schema_base import (
     NODE_PATTERN,
@@ -14,6 +15,7 @@ from .schema_base import (
     Point,
     Section,
     Title,
+    check_node_pair,
     check_node_pairs,
     fault,
 )
@@ -184,6 +186,22 @@ class Springs(Section):
     """Factor on that stiffness for springs along free rings and free edges of sheets."""
     groups: Annotated[tuple[SpringGroup, ...], Field(strict=False)] = ()
     """Springs of other laws; later groups win."""
+    stiffness_factors: dict[str, _Positive] = Field(default={})
+    """Factor on the stiffness that a spring has by its law, by its two node keys; what
+    `springform equalise` writes. Unstressed length, section and weight stay."""
+
+    @field_validator("stiffness_factors")
+    @classmethod
+    def _check_factors(cls, factors: dict[str, float]) -> dict[str, float]:
+        seen: dict[frozenset[str], str] = {}
+        for pair in factors:
+            try:
+                check_node_pair(pair)
+            except PydanticCustomError as error:
+                raise fault((pair,), (error.context or {})["message"]) from None
+            if (other := seen.setdefault(frozenset(pair.split()), pair)) != pair:
+                raise fault((pair,), f"is the same spring as {other}; remove one of the two")
+        return factors
 
 
 class Rod(Section):
