@@ -166,7 +166,7 @@ DESIGNS: dict[str, tuple[str, list[str]]] = {
     "two laws": (with_group("stiffness = 2.0\naxial_stiffness = 3.0"), ["springs.groups[0].axial_stiffness: cannot stand beside stiffness", f"net.toml:{LAST + 1}:"]),
     "two rest lengths": (with_group("rest_length = 2.0\nprestress = 3.0"), ["springs.groups[0].prestress: cannot stand beside rest_length"]),
     "a rest length of a force": (with_group("force = 2.0\nrest_ratio = 0.5"), ["springs.groups[0].rest_ratio: means nothing beside force"]),
-    "a prestressed curve": (with_group("prestress = 2.0\ncurve = [[0, 0], [1, 1]]"), ["springs.groups[0].prestress: cannot stand beside a curve"]),
+    "a curve prestressed beyond reach": (with_group("prestress = -2.0\ncurve = [[0, 0], [1, 1]]"), ["springs.groups[0]", "without force"]),
     "a curve that falls": (with_group("curve = [[0, 0], [0.1, 2], [0.2, 1]]"), ["springs.groups[0].curve: point 2 has a force below", f"net.toml:{LAST}:"]),
     "a curve of numbers": (with_group("curve = [0, 1]"), ["springs.groups[0].curve[0]: must be a point"]),
     "no axial stiffness": (with_group("axial_stiffness = 0.0"), ["springs.groups[0].axial_stiffness: must be greater than 0"]),

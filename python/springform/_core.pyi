@@ -379,6 +379,9 @@ class ForceStrainCurve:
     def axial_stiffness(self) -> float:
         """Force over strain at the last point [N]."""
 
+    def strain(self, forces: _Floats) -> _Floats:
+        """Return the least strains at which the curve has forces [N]."""
+
     def force(self, strains: _Floats) -> _Floats:
         """Return the force at strains, (s,) [N]."""
 
