@@ -65,12 +65,59 @@ class MoveAnchor(_Message):
 
 
 class FixNode(_Message):
-    """Make a base vertex an anchor where it is now, or let an anchor go."""
+    """Make a base vertex an anchor where it is now, hold an anchor otherwise, or let it go."""
 
     type: Literal["fix_node"] = "fix_node"
     id: int
     node: Key
     fixed: bool
+    holds: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = "xyz"
+    """Along which axes it is held; it slides along the others."""
+    line: Vector | None = None
+    """Direction of a line on which it slides."""
+    plane: Vector | None = None
+    """Normal of a plane in which it slides."""
+
+
+class SpringChoice(_Message):
+    """Which springs: those that meet all that is said, all springs if nothing is."""
+
+    parts: list[str] | None = None
+    types: list[int | str] | None = None
+    levels: list[int] | None = None
+    along: list[str] | None = None
+    pairs: Annotated[list[Annotated[str, Field(max_length=400)]], Field(max_length=200_000)] | (
+        None
+    ) = None
+    """Springs by their two node keys, such as "v1 e7:1/2"."""
+
+
+class SetSprings(_Message):
+    """Say law, unstressed length, sense or section of some springs, as a group of the file does."""
+
+    type: Literal["set_springs"] = "set_springs"
+    id: int
+    choice: SpringChoice
+    says: dict[str, Any]
+    """By the keys of `springs.groups`; null takes back what was said of these springs."""
+
+
+class DropSprings(_Message):
+    """Take back all that a group says of its springs."""
+
+    type: Literal["drop_springs"] = "drop_springs"
+    id: int
+    group: Annotated[int, Field(ge=0)]
+
+
+class SetDensity(_Message):
+    """Bring all cells of a cylinder or sheet, or of the net, to one level."""
+
+    type: Literal["set_density"] = "set_density"
+    id: int
+    part: Annotated[str, Field(max_length=200)] | None = None
+    """None: the whole net."""
+    level: Annotated[int, Field(ge=0, le=8)]
 
 
 class SeekStress(_Message):
@@ -98,6 +145,17 @@ class SetFramework(_Message):
     type: Literal["set_framework"] = "set_framework"
     id: int
     framework: dict[str, Any]
+
+
+class Preview(_Message):
+    """Tell what an action would do, and do nothing."""
+
+    type: Literal["preview"] = "preview"
+    id: int
+    action: Annotated[
+        EditCells | EditSpring | SeekStress | SetDensity | SetValue | SetSprings,
+        Field(discriminator="type"),
+    ]
 
 
 class Undo(_Message):
@@ -205,6 +263,10 @@ Request = Annotated[
     | SeekStress
     | SetValue
     | SetFramework
+    | SetSprings
+    | DropSprings
+    | SetDensity
+    | Preview
     | Undo
     | Travel
     | Save
@@ -256,6 +318,36 @@ class AnchorState(_Message):
     name: str
     node: Key
     position: Vector
+    holds: str
+    """Along which axes it is held."""
+    line: Vector | None
+    """Direction of the line on which it slides."""
+    plane: Vector | None
+    """Normal of the plane in which it slides."""
+
+
+class SpringGroupLine(_Message):
+    """A group of springs of the design file, for people."""
+
+    title: str
+    """Which springs."""
+    says: str
+    """What of them."""
+
+
+class PreviewState(_Message):
+    """What an action would do."""
+
+    springs_added: int
+    springs_removed: int
+    cells_added: int
+    cells_removed: int
+    figures: Figures
+    """Figures after it."""
+    added: list[float]
+    """Ends of the springs that would come, six numbers each [m]; empty if they are very many."""
+    removed: list[float]
+    """Ends of the springs that would go, six numbers each [m]; empty if they are very many."""
 
 
 class CellTypeChoice(_Message):
@@ -299,6 +391,8 @@ class DocumentState(_Message):
     framework: dict[str, Any]
     stiffness: float
     ring_factor: float
+    spring_groups: list[SpringGroupLine]
+    """What is said of some springs; of two that say the same of a spring, the later counts."""
     looking: Looked | None
     """What is shown instead of the design; figures and net are of that."""
 
@@ -356,6 +450,8 @@ class Reply(_Message):
     """What is wrong and what to do; None: it was done."""
     cells: list[Address] = []
     """Cells that the action made or changed."""
+    preview: PreviewState | None = None
+    """What was asked by `preview`."""
 
 
 class Problem(_Message):

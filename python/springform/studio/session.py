@@ -35,6 +35,8 @@ from .messages import (
     Look,
     Looked,
     Move,
+    Preview,
+    PreviewState,
     Problem,
     Received,
     Reinstate,
@@ -51,6 +53,8 @@ from .messages import (
     protocol,
 )
 from .motion import Motion, State
+from .preview import preview_of
+from .spring_groups import group_lines
 from .telling import cell_types_of, figures_of, motion_frame, picture_of
 
 _FRAMES_ON_THE_WAY = 3
@@ -190,6 +194,9 @@ class Session:
             window.tell(Problem(message=f"not understood: {place}: {first['msg']}"))
             return
         try:
+            if isinstance(request, Preview):
+                self._answer(window, request, preview=await self._preview(request))
+                return
             cells = await self._do(window, request)
         except SpringformError as error:
             self._answer(window, request, problem=str(error))
@@ -284,6 +291,17 @@ class Session:
         cells = await self._in_thread(done)
         await self._show()
         return cells
+
+    async def _preview(self, request: Preview) -> PreviewState:
+        self._check_design_is_shown()
+        positions = self._now()
+
+        def look() -> PreviewState:
+            action, _ = commands.action_of(self.design, request.action, positions)
+            return preview_of(self._journal.document, action, positions)
+
+        async with self._order:
+            return await self._in_thread(look)
 
     async def _travel(self, position: int) -> None:
         self._check_design_is_shown()
@@ -512,13 +530,21 @@ class Session:
             before=self._figures.get(document.position - 1) if looked is None else None,
             looking=None if looked is None else looked[0],
             anchors=[
-                AnchorState(name=name, node=nodes[node], position=list(anchor.position))
+                AnchorState(
+                    name=name,
+                    node=nodes[node],
+                    position=list(anchor.position),
+                    holds=anchor.holds,
+                    line=None if anchor.line is None else list(anchor.line),
+                    plane=None if anchor.plane is None else list(anchor.plane),
+                )
                 for name, node, anchor in anchors
             ],
             cell_types=cell_types_of(design),
             framework=values["framework"],
             stiffness=values["springs"]["stiffness"],
             ring_factor=values["springs"]["ring_factor"],
+            spring_groups=group_lines(design),
         )
 
     def _take_design(self) -> None:
