@@ -13,7 +13,7 @@ export default defineConfig({
   projects: [
     { name: "studio", testMatch: "*.spec.ts" },
     // Not a test: `make screenshots` takes the pictures of the documentation.
-    { name: "pictures", testMatch: "pictures.ts" },
+    { name: "pictures", testMatch: "*pictures.ts" },
   ],
   use: {
     viewport: { width: 1280, height: 800 },

@@ -103,7 +103,7 @@ def test_a_law_holds_for_the_springs_that_are_chosen(says: dict[str, Any], law: 
     network = after.network()
     assert network.law[7] == LAWS.index(law)
     others = np.arange(len(network.law)) != 7
-    for name in ("law", "stiffness", "rest_length", "force", "sense"):
+    for name in ("law", "stiffness", "rest_length", "force"):
         values, before = getattr(network, name), getattr(NET.network(), name)
         np.testing.assert_array_equal(values[others], before[others])
     assert after.solve().converged

@@ -98,8 +98,9 @@ test("an architect relieves an anchor cell by cell", async ({ page, open }) => {
   await page.mouse.move(anchor.x - 8, anchor.y - 30);
   const card = page.locator(".hover-card");
   await expect(card).toContainText("Force");
-  await expect(card).toContainText("Rest length");
-  await expect(card).toContainText("F = k (L − r)");
+  await expect(card).toContainText("LengthL");
+  await expect(card).toContainText("Unstressed lengthL0");
+  await expect(card).toContainText("F = k L");
   await expect(card).toContainText(/0\.\d{3,} N/);
 
   await clickCellAbove(page, anchor);

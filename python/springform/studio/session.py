@@ -136,6 +136,11 @@ class Session:
         """The design now."""
         return self._journal.document.design
 
+    @property
+    def shown(self) -> Design:
+        """The design, or the individual that is shown instead."""
+        return self.design if self._looking is None else self._looking[1]
+
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
@@ -551,7 +556,7 @@ class Session:
         if self._journal.document.position not in self._figures:
             self._measure()
         self._revision += 1
-        design = self.design if self._looking is None else self._looking[1]
+        design = self.shown
         self._node_keys = set(design.nodes)
         self._nets[self._revision] = (design, tables_of(design))
         self._nets.pop(self._revision - _NETS_KEPT, None)

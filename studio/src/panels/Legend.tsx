@@ -1,16 +1,21 @@
 // What the colours mean, and the choice of what they show.
 import { SlidersHorizontal } from "lucide-react";
 import { Popover } from "radix-ui";
-import { useEffect, useMemo, useState } from "react";
+import { useMemo } from "react";
 import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
 import { brokenColour, cssColour, cssGradient, PALETTES, slackColour } from "../document/palettes";
-import { KINDS, QUANTITIES, type QuantityId, quantityOf } from "../document/quantities";
+import {
+  formulaText,
+  KINDS,
+  QUANTITIES,
+  type QuantityId,
+  quantityOf,
+} from "../document/quantities";
 import { inDigits, type RangeMode, valueAt } from "../document/scale";
-import { changeColour, store } from "../document/store";
+import { changeColour } from "../document/store";
+import { largestReaction } from "../viewport/arrows";
 import { Choice, Hint, NumberField } from "./parts";
-import { useStudio } from "./use";
-
-const EVERY = 100; // ms; the legend need not follow every frame
+import { useCalmMotion, useStudio } from "./use";
 
 export function Legend() {
   const motion = useCalmMotion();
@@ -42,28 +47,9 @@ export function Legend() {
         {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
       </header>
       {legend.shows === "scale" ? <ScaleBar legend={legend} /> : <KindList legend={legend} />}
+      <Arrow />
     </section>
   );
-}
-
-/** The motion now, at most every tenth of a second. */
-function useCalmMotion() {
-  const [motion, setMotion] = useState(store.getState().motion);
-  useEffect(() => {
-    let timer = 0;
-    const stop = store.subscribe((state, before) => {
-      if (state.motion === before.motion || timer) return;
-      timer = window.setTimeout(() => {
-        timer = 0;
-        setMotion(store.getState().motion);
-      }, EVERY);
-    });
-    return () => {
-      stop();
-      clearTimeout(timer);
-    };
-  }, []);
-  return motion;
 }
 
 function ScaleBar({ legend }: { legend: ScaleLegend }) {
@@ -90,7 +76,7 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
         </span>
       </div>
       <footer>
-        <code>{quantity.formula}</code>
+        <code>{formulaText(quantity)}</code>
         <span>
           {[
             scale.logarithmic && "log",
@@ -112,6 +98,20 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
         <Entry colour={cssColour(brokenColour(theme))} name="undefined" count={broken} />
       )}
     </>
+  );
+}
+
+/** What the arrows mean, while they are shown. */
+function Arrow() {
+  const shown = useStudio((state) => state.view.reactions);
+  const motion = useCalmMotion();
+  if (!shown || !motion) return null;
+  return (
+    <div className="legend-entry reaction-entry">
+      <i />
+      <span>longest reaction</span>
+      <span>{inDigits(largestReaction(motion))} N</span>
+    </div>
   );
 }
 

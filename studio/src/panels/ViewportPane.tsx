@@ -11,7 +11,9 @@ import { Viewport } from "../viewport/scene";
 import { HoverCard } from "./HoverCard";
 import { Legend } from "./Legend";
 import { NetMenu } from "./NetMenu";
+import { PreviewCard } from "./PreviewCard";
 import { IconButton } from "./parts";
+import { SectionButton, SectionControl } from "./SectionControl";
 import { type Stage, useStage, useStudio } from "./use";
 
 /** Names of anchors are shown while they leave room for the net. */
@@ -82,7 +84,9 @@ export function ViewportPane({
       </ContextMenu.Root>
       <div className="anchor-names" ref={names} aria-hidden="true" />
       <HoverCard />
+      <PreviewCard />
       <Legend />
+      <SectionControl />
       <ViewButtons />
       {children}
     </main>
@@ -170,7 +174,7 @@ function ViewButtons() {
           <MoveUpRight />
         </IconButton>
         <IconButton
-          label="Springs as thick as their force"
+          label="Springs as thick as what they are coloured by"
           keys="W"
           side="left"
           pressed={view.thickness}
@@ -178,6 +182,7 @@ function ViewButtons() {
         >
           <Spline />
         </IconButton>
+        <SectionButton />
       </div>
     </>
   );
