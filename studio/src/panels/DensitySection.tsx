@@ -10,7 +10,8 @@ import { useStudio } from "./use";
 const DEEPEST = 8;
 
 export function DensitySection() {
-  const net = useStudio((state) => state.net)!;
+  const net = useStudio((state) => state.net);
+  if (!net) return null;
   const parts = net.parts[0] === "mesh" ? [] : net.parts;
   const rows = [{ part: null as string | null, name: "whole net", number: -1 }].concat(
     parts.length > 1 ? parts.map((part, number) => ({ part, name: part, number })) : [],

@@ -3,6 +3,7 @@ import { SlidersHorizontal } from "lucide-react";
 import { Popover } from "radix-ui";
 import { useMemo } from "react";
 import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
+import { formulaOf, shared } from "../document/laws";
 import { brokenColour, cssColour, cssGradient, PALETTES, slackColour } from "../document/palettes";
 import {
   formulaText,
@@ -58,6 +59,10 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
   const { scale, least, most, slack, broken } = legend;
   const quantity = quantityOf(colour.by)!;
   const unit = quantity.unit && ` ${quantity.unit}`;
+  const net = useStudio((state) => state.net)!;
+  const law = shared(net.law, (number) => number);
+  const one = quantity.id === "force" && law !== null && net.law.length > 0;
+  const formula = one ? formulaOf(net, 0) : formulaText(quantity);
   const below = least < scale.low * (1 - 1e-6);
   const above = most > scale.high * (1 + 1e-6);
   return (
@@ -76,7 +81,7 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
         </span>
       </div>
       <footer>
-        <code>{formulaText(quantity)}</code>
+        <code>{formula}</code>
         <span>
           {[
             scale.logarithmic && "log",

@@ -19,12 +19,12 @@ interface Scope {
 }
 
 export function SpringEditor() {
-  const net = useStudio((state) => state.net)!;
+  const net = useStudio((state) => state.net);
   const selection = useStudio((state) => state.selection);
   const position = useStudio((state) => state.document!.position);
   const ready = useStudio((state) => state.motion?.header.revision === state.net?.revision);
   const [wanted, setWanted] = useState("selection");
-  if (!ready) return null;
+  if (!net || !ready) return null;
   const scopes = scopesOf(net, selection);
   const scope = scopes.find(({ id }) => id === wanted) ?? scopes[0];
   return (
@@ -162,7 +162,7 @@ function LawForm({ scope }: { scope: Scope }) {
       {chosen?.elastic && (
         <>
           <Choice
-            label="Unstressed length L0"
+            label="Unstressed L0"
             value={restKey}
             options={[
               { value: "" as const, name: rest === null ? "mixed" : `${inDigits(rest, 4)} m` },
@@ -196,7 +196,7 @@ function LawForm({ scope }: { scope: Scope }) {
         onTake={setSense}
       />
       <Quantity
-        label="Diameter ⌀, for stresses"
+        label="Diameter ⌀"
         unit="mm"
         text={diameter}
         empty={diameterOf(net, rows)}

@@ -3,6 +3,7 @@ import { Anchor, CircleDot, Grid2x2, Maximize, MoveUpRight, Spline } from "lucid
 import { ContextMenu } from "radix-ui";
 import { type ReactNode, useEffect, useRef, useState } from "react";
 import { positionOf } from "../document/motion";
+import { cutOf, keeps } from "../document/section";
 import { clicked, springKey } from "../document/selection";
 import { changeView, select, store } from "../document/store";
 import { Hands } from "../tools/hands";
@@ -99,9 +100,12 @@ function placeNames(viewport: Viewport, layer: HTMLElement): void {
     net && motion && view.anchors && net.anchors.length <= MOST_NAMES ? net.anchors.length : 0;
   while (layer.children.length > shown) layer.lastChild!.remove();
   while (layer.children.length < shown) layer.append(document.createElement("span"));
+  const cut = motion && cutOf(view.section, motion.positions);
   for (let anchor = 0; anchor < shown; anchor++) {
     const name = layer.children[anchor] as HTMLElement;
-    const place = viewport.project(positionOf(motion!, net!.anchors[anchor]));
+    const node = net!.anchors[anchor];
+    const there = keeps(cut, motion!.positions, node);
+    const place = there ? viewport.project(positionOf(motion!, node)) : null;
     name.hidden = !place;
     if (!place) continue;
     if (name.textContent !== net!.anchorNames[anchor]) name.textContent = net!.anchorNames[anchor];
