@@ -16,6 +16,7 @@ export default defineConfig({
     { name: "pictures", testMatch: "*pictures.ts" },
   ],
   use: {
+    actionTimeout: 20_000,
     viewport: { width: 1280, height: 800 },
     colorScheme: "dark",
     launchOptions: {
