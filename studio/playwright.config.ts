@@ -13,7 +13,9 @@ export default defineConfig({
   projects: [
     { name: "studio", testMatch: "*.spec.ts" },
     // Not a test: `make screenshots` takes the pictures of the documentation.
-    { name: "pictures", testMatch: "*pictures.ts" },
+    { name: "pictures", testMatch: "pictures.ts" },
+    // Not tests either: `make feel` prints how long picking and pulling take.
+    { name: "measures", testMatch: "measures.ts" },
   ],
   use: {
     actionTimeout: 20_000,

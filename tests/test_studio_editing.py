@@ -280,3 +280,17 @@ def test_a_preview_tells_what_the_action_does_and_does_nothing(action: dict[str,
     assert len(told.removed) == 6 * told.springs_removed
     assert np.isfinite(told.added).all()
     assert told.figures.springs == after.measure(after.solve()).springs
+
+
+# --- frameworks -----------------------------------------------------------------------------------
+
+
+def test_springs_chosen_by_nodes_do_not_stand_in_the_way_of_another_framework() -> None:
+    pair = next(
+        " ".join(NET.nodes[end] for end in ends) for ends in NET.network().springs[::-1].tolist()
+    )
+    marked = springs(springs(NET, {"pairs": [pair]}, stiffness=3.0), {}, diameter=0.002)
+    framework = marked.file.framework.model_dump(mode="json")
+    framework["cylinders"][0]["along"] = 2
+    after = done(marked, type="set_framework", framework=framework)
+    assert [group.says for group in group_lines(after)] == ["⌀ 0.002 m"]

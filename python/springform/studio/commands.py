@@ -127,7 +127,10 @@ def set_framework(design: Design, request: SetFramework) -> Action:
     try:
         after = values_of(Design(design_file.from_data(wanted)))
     except DesignError:
-        wanted |= {"forest": empty, "overrides": bare}
+        # What names single nodes can't be carried to another framework.
+        groups = [group for group in values["springs"]["groups"] if group["pairs"] is None]
+        springs = values["springs"] | {"groups": groups}
+        wanted |= {"forest": empty, "overrides": bare, "springs": springs}
         after = values_of(Design(design_file.from_data(wanted)))
     whole = ValueChange(path=[], before=values, after=after)
     return Action(label=label, changes=[whole])
