@@ -1,33 +1,33 @@
 // Not a test: times what people feel in a window, and prints it. Picking in a net of 20,000 springs, and the
 // way from a pointer's move to the engine's new positions in a page (the picture is drawn in software here).
+import type { Page } from "@playwright/test";
 import * as THREE from "three";
 import { type Motion, motionOf } from "../src/document/motion";
 import { applyNet, type Net } from "../src/document/net";
 import { decodeFrame } from "../src/protocol/frames";
 import { Projection, pick } from "../src/viewport/picking";
-import { anchorPlace, test } from "./studio";
+import { anchorPlace, converged, documentOf, expect, test } from "./studio";
 
 const ALL = { nodes: true, springs: true, cells: true };
 
-/** Waits until a document's net has a number of springs at least, and is settled. */
-function netOf(address: string, ask: object, least: number): Promise<{ net: Net; motion: Motion }> {
-  const { host, hash, search } = new URL(address);
-  const socket = new WebSocket(`ws://${host}/api/documents/${hash.slice(1)}/socket${search}`);
-  socket.binaryType = "arraybuffer";
-  let net: Net | null = null;
-  return new Promise((resolve) => {
-    socket.onopen = () => socket.send(JSON.stringify(ask));
-    socket.onmessage = ({ data }) => {
-      if (typeof data === "string") return;
-      const { header, arrays } = decodeFrame(data as ArrayBuffer);
-      if (header.frame === "net") net = applyNet(net, header, arrays);
-      if (header.frame !== "motion") return;
-      socket.send('{"type":"received"}');
-      if (!net || header.revision !== net.revision || net.law.length < least) return;
-      socket.close();
-      resolve({ net, motion: motionOf(header, arrays) });
-    };
+/** Keeps the net that a page is sent, and where it is. */
+function listen(page: Page): { net: Net | null; motion: Motion | null } {
+  const kept: ReturnType<typeof listen> = { net: null, motion: null };
+  page.on("websocket", (socket) => {
+    socket.on("framereceived", ({ payload }) => {
+      if (typeof payload === "string") return;
+      const { header, arrays } = decodeFrame(new Uint8Array(payload).buffer);
+      if (header.frame === "net") kept.net = applyNet(kept.net, header, arrays);
+      if (header.frame === "motion") kept.motion = motionOf(header, arrays);
+    });
   });
+  return kept;
+}
+
+async function finer(page: Page, position: number): Promise<void> {
+  await page.getByRole("button", { name: "Finer: whole net" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(position);
+  await converged(page);
 }
 
 function quantile(values: number[], share: number): number {
@@ -35,9 +35,12 @@ function quantile(values: number[], share: number): number {
 }
 
 test("picking at 20,000 springs", async ({ page, open }) => {
+  const kept = listen(page);
   await open("three-cylinders-dense");
-  const finer = { type: "set_density", id: 1, part: null, level: 2 };
-  const { net, motion } = await netOf(page.url(), finer, 20_000);
+  await finer(page, 1);
+  await finer(page, 2);
+  const net = kept.net!;
+  const motion = kept.motion!;
   const camera = new THREE.PerspectiveCamera(32, 1.25, 0.1, 100);
   camera.up.set(0, 0, 1);
   camera.position.set(6, -10, 6);
@@ -65,8 +68,7 @@ test("picking at 20,000 springs", async ({ page, open }) => {
 test("pointer to positions in a page at 3,000 springs", async ({ page, open }) => {
   await page.addInitScript(watchLine);
   await open("three-cylinders-quad");
-  await netOf(page.url(), { type: "set_density", id: 1, part: null, level: 1 }, 2_000);
-  await page.waitForTimeout(2500);
+  await finer(page, 1);
   const from = await anchorPlace(page, "A7");
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
