@@ -189,3 +189,20 @@ test("springs of about the same force are selected and given a law", async ({ pa
     .poll(async () => (await documentOf(page)).spring_groups)
     .toEqual([{ title: `${count} springs`, says: "k = 1.5 N/m" }]);
 });
+
+test("types are given with a brush", async ({ page, open }) => {
+  await open("three-cylinders-quad");
+  const before = await documentOf(page);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Shift+B");
+  await page.getByLabel("Type of the brush").selectOption("2");
+  const { x, y } = await anchorPlace(page, "A4");
+  await page.mouse.move(x, y - 60);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 160, { steps: 12 });
+  await page.mouse.up();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const { history, figures } = await documentOf(page);
+  expect(history.at(-1)?.label).toMatch(/^Give .* type 2$/);
+  expect(figures.springs).not.toBe(before.figures.springs);
+});

@@ -12,7 +12,7 @@ import type { Section } from "./section";
 import { NOTHING, type Selection, stillThere } from "./selection";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "cut" | "add";
+export type ToolId = "pull" | "subdivide" | "retype" | "cut" | "add";
 
 /** How the net is shown. */
 export interface View {
@@ -61,6 +61,8 @@ export interface State {
   selection: Selection;
   hover: Hover | null;
   tool: ToolId;
+  /** Type that the brush gives to cells. */
+  brushType: string;
   view: View;
   theme: Theme;
   /** Label of what the engine is busy with; empty if it answers at once. */
@@ -110,6 +112,7 @@ export const store = createStore<State>()(() => ({
   selection: NOTHING,
   hover: null,
   tool: "pull",
+  brushType: "6",
   busy: "",
   notice: null,
   ...keptView(),

@@ -4,7 +4,14 @@ import { Popover } from "radix-ui";
 import { useMemo } from "react";
 import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
 import { formulaOf, shared } from "../document/laws";
-import { brokenColour, cssColour, cssGradient, PALETTES, slackColour } from "../document/palettes";
+import {
+  brokenColour,
+  cssColour,
+  cssGradient,
+  noneColour,
+  PALETTES,
+  slackColour,
+} from "../document/palettes";
 import {
   formulaText,
   KINDS,
@@ -56,7 +63,7 @@ export function Legend() {
 function ScaleBar({ legend }: { legend: ScaleLegend }) {
   const colour = useStudio((state) => state.view.colour);
   const theme = useStudio((state) => state.theme);
-  const { scale, least, most, slack, broken } = legend;
+  const { scale, least, most, slack, none, broken } = legend;
   const quantity = quantityOf(colour.by)!;
   const unit = quantity.unit && ` ${quantity.unit}`;
   const net = useStudio((state) => state.net)!;
@@ -99,8 +106,15 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
           count={slack}
         />
       )}
+      {none > 0 && (
+        <Entry
+          colour={cssColour(noneColour(theme))}
+          name={`no ${quantity.name.toLowerCase()}`}
+          count={none}
+        />
+      )}
       {broken > 0 && (
-        <Entry colour={cssColour(brokenColour(theme))} name="undefined" count={broken} />
+        <Entry colour={cssColour(brokenColour(theme))} name="broken: no force" count={broken} />
       )}
     </>
   );

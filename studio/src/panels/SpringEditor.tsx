@@ -77,7 +77,7 @@ function scopesOf(net: Net, selection: State["selection"]): Scope[] {
 }
 
 const RESTS = {
-  rest_ratio: { name: "share of the drawn length", unit: "", value: "0.8" },
+  rest_ratio: { name: "× drawn length", unit: "", value: "0.8" },
   rest_length: { name: "length", unit: "m", value: "" },
   prestress: { name: "from prestress", unit: "N", value: "" },
 };
@@ -91,7 +91,8 @@ function LawForm({ scope }: { scope: Scope }) {
   const rest = shared(rows, (row) => net.restLength[row]);
   const value = known && shared(rows, (row) => known.value(net, row));
   const [law, setLaw] = useState<LawKey | "">((known?.key as LawKey) ?? "");
-  const [constant, setConstant] = useState(value === null ? "" : plain(value));
+  const held = value === null || known?.key === "curve" ? "" : plain(value);
+  const [constant, setConstant] = useState(held);
   const [restKey, setRestKey] = useState<RestKey | "">("");
   const [restValue, setRestValue] = useState("");
   const knownSense = shared(rows, (row) => net.sense[row]);
@@ -102,7 +103,7 @@ function LawForm({ scope }: { scope: Scope }) {
   const takeLaw = (key: LawKey | "") => {
     setLaw(key);
     const mean = meansOf(net, motion, rows);
-    if (!key || key === known?.key) setConstant(value === null ? "" : plain(value));
+    if (!key || key === known?.key) setConstant(held);
     else setConstant(likely(key, mean.force, mean.length));
     const needsRest = (key === "axial_stiffness" || key === "curve") && !(rest && rest > 0);
     setRestKey(needsRest ? "rest_ratio" : "");
@@ -111,7 +112,7 @@ function LawForm({ scope }: { scope: Scope }) {
   const submit = (event: FormEvent) => {
     event.preventDefault();
     const says: Record<string, unknown> = {};
-    if (law && (newLaw || constant !== (value === null ? "" : plain(value))))
+    if (law && (newLaw || constant !== held))
       says[law] = law === "curve" ? pointsOf(constant) : numberOf(constant);
     if (restKey && chosen?.elastic !== false) says[restKey] = numberOf(restValue);
     if (sense && sense !== (knownSense === null ? "" : SENSES[knownSense].key)) says.sense = sense;
@@ -178,7 +179,7 @@ function LawForm({ scope }: { scope: Scope }) {
           {restKey && (
             <Quantity
               label={restKey === "prestress" ? "Force at the drawn length" : "L0"}
-              unit={restKey === "rest_ratio" ? "× drawn" : RESTS[restKey].unit}
+              unit={RESTS[restKey].unit}
               text={restValue}
               empty=""
               onText={setRestValue}

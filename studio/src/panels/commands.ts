@@ -205,6 +205,13 @@ export const COMMANDS: Command[] = [
     keys: "B",
     run: tool("subdivide"),
   },
+  {
+    id: "tool-retype",
+    label: "Give types with a brush",
+    group: "Tools",
+    keys: "Shift+B",
+    run: tool("retype"),
+  },
   { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
   { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
   {
