@@ -15,16 +15,14 @@ from .changes import Action, ValueChange, values_of
 from .changes import forest_action as _forest
 from .changes import value_action as _value
 from .density import set_density
+from .editing_messages import DropSprings, SetDensity, SetSprings
 from .messages import (
-    DropSprings,
     EditCells,
     EditSpring,
     FixNode,
     MoveAnchor,
     SeekStress,
-    SetDensity,
     SetFramework,
-    SetSprings,
     SetValue,
 )
 from .spring_groups import drop_springs, set_springs

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..design import Design
+from ..design_schema import MAXIMUM_CELLS
 from ..errors import InputError
 from .changes import Action, forest_action
-from .messages import SetDensity
-
-_MOST_CELLS = 1_000_000
-"""Cells that one action may make."""
+from .editing_messages import SetDensity
 
 
 def set_density(design: Design, request: SetDensity) -> Action:
@@ -29,7 +27,7 @@ def set_density(design: Design, request: SetDensity) -> Action:
                 edits.append(f"{above} off")
         else:
             edits += _subdivisions(design, address, request.level - level)
-        if len(edits) > _MOST_CELLS:
+        if 4 * len(edits) > MAXIMUM_CELLS:
             raise InputError("makes too many cells; choose a lower level", key="level")
     if not edits:
         raise InputError(f"all cells are of level {request.level} already", key="level")

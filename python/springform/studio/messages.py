@@ -11,26 +11,12 @@ import hashlib
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
-Key = Annotated[str, Field(max_length=200)]
-Address = Annotated[str, Field(max_length=200)]
-
-
-class _Message(BaseModel):
-    model_config = ConfigDict(
-        strict=True,
-        extra="forbid",
-        frozen=True,
-        allow_inf_nan=False,
-        use_attribute_docstrings=True,
-        # Whoever reads a message finds every field in it.
-        json_schema_serialization_defaults_required=True,
-    )
-
+from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .message_base import Address, Key, Vector
+from .message_base import Message as _Message
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
@@ -77,47 +63,6 @@ class FixNode(_Message):
     """Direction of a line on which it slides."""
     plane: Vector | None = None
     """Normal of a plane in which it slides."""
-
-
-class SpringChoice(_Message):
-    """Which springs: those that meet all that is said, all springs if nothing is."""
-
-    parts: list[str] | None = None
-    types: list[int | str] | None = None
-    levels: list[int] | None = None
-    along: list[str] | None = None
-    pairs: Annotated[list[Annotated[str, Field(max_length=400)]], Field(max_length=200_000)] | (
-        None
-    ) = None
-    """Springs by their two node keys, such as "v1 e7:1/2"."""
-
-
-class SetSprings(_Message):
-    """Say law, unstressed length, sense or section of some springs, as a group of the file does."""
-
-    type: Literal["set_springs"] = "set_springs"
-    id: int
-    choice: SpringChoice
-    says: dict[str, Any]
-    """By the keys of `springs.groups`; null takes back what was said of these springs."""
-
-
-class DropSprings(_Message):
-    """Take back all that a group says of its springs."""
-
-    type: Literal["drop_springs"] = "drop_springs"
-    id: int
-    group: Annotated[int, Field(ge=0)]
-
-
-class SetDensity(_Message):
-    """Bring all cells of a cylinder or sheet, or of the net, to one level."""
-
-    type: Literal["set_density"] = "set_density"
-    id: int
-    part: Annotated[str, Field(max_length=200)] | None = None
-    """None: the whole net."""
-    level: Annotated[int, Field(ge=0, le=8)]
 
 
 class SeekStress(_Message):
@@ -206,7 +151,7 @@ class SteerRun(_Message):
     type: Literal["steer_run"] = "steer_run"
     id: int
     what: Literal["pause", "continue", "stop", "change"]
-    parameters: dict[str, Any] = {}
+    parameters: dict[str, Any] = Field(default={})
 
 
 class Look(_Message):
@@ -326,15 +271,6 @@ class AnchorState(_Message):
     """Normal of the plane in which it slides."""
 
 
-class SpringGroupLine(_Message):
-    """A group of springs of the design file, for people."""
-
-    title: str
-    """Which springs."""
-    says: str
-    """What of them."""
-
-
 class PreviewState(_Message):
     """What an action would do."""
 
@@ -448,7 +384,7 @@ class Reply(_Message):
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
-    cells: list[Address] = []
+    cells: list[Address] = Field(default=[])
     """Cells that the action made or changed."""
     preview: PreviewState | None = None
     """What was asked by `preview`."""

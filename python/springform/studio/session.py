@@ -20,6 +20,7 @@ from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from . import commands, journal
 from .changes import Action, values_of
+from .document import Document
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .library import file_hash
@@ -299,14 +300,14 @@ class Session:
 
     async def _preview(self, request: Preview) -> PreviewState:
         self._check_design_is_shown()
-        positions = self._now()
+        # A copy of its own, so that actions need not wait for what is only looked at.
+        document, positions = Document(self.design), self._now()
 
         def look() -> PreviewState:
-            action, _ = commands.action_of(self.design, request.action, positions)
-            return preview_of(self._journal.document, action, positions)
+            action, _ = commands.action_of(document.design, request.action, positions)
+            return preview_of(document, action, positions)
 
-        async with self._order:
-            return await self._in_thread(look)
+        return await asyncio.to_thread(look)
 
     async def _travel(self, position: int) -> None:
         self._check_design_is_shown()

@@ -9,7 +9,7 @@ from ..design import Design
 from ..errors import InputError
 from ..rigging_schema import LAWS, REST_LENGTHS, SpringGroup
 from .changes import Action, value_action, value_at, values_of
-from .messages import DropSprings, SetSprings, SpringGroupLine
+from .editing_messages import DropSprings, SetSprings, SpringGroupLine
 
 _CHOICE = ("parts", "types", "levels", "along", "pairs")
 """Keys of a group that say which springs are in it."""

@@ -94,7 +94,9 @@ export class Pulling implements Tool {
     select(clicked(selection, kind, key, pointer.shift || pointer.control));
   }
 
-  hover(): void {}
+  hover(viewport: Viewport, _: Hit | null, { x, y }: Pointer): void {
+    viewport.point(viewport.armUnder(x, y) ? "move" : this.cursor);
+  }
 
   cancel(viewport: Viewport): void {
     if (this.held) tell({ type: "release" });

@@ -105,6 +105,11 @@ export class Viewport {
     this.follow(store.getState(), null);
   }
 
+  /** Shows what the pointer would do here. */
+  point(cursor: string): void {
+    this.canvas.style.cursor = cursor;
+  }
+
   /** Draws at the next chance; `changed` says that it is not only the eye that moved. */
   redraw(changed = false): void {
     this.dirty ||= changed;
