@@ -24,7 +24,7 @@ export function DocumentMenu() {
       );
   };
   return (
-    <DropdownMenu.Root onOpenChange={load}>
+    <DropdownMenu.Root modal={false} onOpenChange={load}>
       <DropdownMenu.Trigger className="document-button" aria-label={`Document ${name}`}>
         <h1>{name}</h1>
         <ChevronDown />
