@@ -11,26 +11,12 @@ import hashlib
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
-Key = Annotated[str, Field(max_length=200)]
-Address = Annotated[str, Field(max_length=200)]
-
-
-class _Message(BaseModel):
-    model_config = ConfigDict(
-        strict=True,
-        extra="forbid",
-        frozen=True,
-        allow_inf_nan=False,
-        use_attribute_docstrings=True,
-        # Whoever reads a message finds every field in it.
-        json_schema_serialization_defaults_required=True,
-    )
-
+from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .message_base import Address, Key, Vector
+from .message_base import Message as _Message
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
@@ -65,12 +51,18 @@ class MoveAnchor(_Message):
 
 
 class FixNode(_Message):
-    """Make a base vertex an anchor where it is now, or let an anchor go."""
+    """Make a base vertex an anchor where it is now, hold an anchor otherwise, or let it go."""
 
     type: Literal["fix_node"] = "fix_node"
     id: int
     node: Key
     fixed: bool
+    holds: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = "xyz"
+    """Along which axes it is held; it slides along the others."""
+    line: Vector | None = None
+    """Direction of a line on which it slides."""
+    plane: Vector | None = None
+    """Normal of a plane in which it slides."""
 
 
 class SeekStress(_Message):
@@ -98,6 +90,17 @@ class SetFramework(_Message):
     type: Literal["set_framework"] = "set_framework"
     id: int
     framework: dict[str, Any]
+
+
+class Preview(_Message):
+    """Tell what an action would do, and do nothing."""
+
+    type: Literal["preview"] = "preview"
+    id: int
+    action: Annotated[
+        EditCells | EditSpring | SeekStress | SetDensity | SetValue | SetSprings,
+        Field(discriminator="type"),
+    ]
 
 
 class Undo(_Message):
@@ -148,7 +151,7 @@ class SteerRun(_Message):
     type: Literal["steer_run"] = "steer_run"
     id: int
     what: Literal["pause", "continue", "stop", "change"]
-    parameters: dict[str, Any] = {}
+    parameters: dict[str, Any] = Field(default={})
 
 
 class Look(_Message):
@@ -205,6 +208,10 @@ Request = Annotated[
     | SeekStress
     | SetValue
     | SetFramework
+    | SetSprings
+    | DropSprings
+    | SetDensity
+    | Preview
     | Undo
     | Travel
     | Save
@@ -256,6 +263,27 @@ class AnchorState(_Message):
     name: str
     node: Key
     position: Vector
+    holds: str
+    """Along which axes it is held."""
+    line: Vector | None
+    """Direction of the line on which it slides."""
+    plane: Vector | None
+    """Normal of the plane in which it slides."""
+
+
+class PreviewState(_Message):
+    """What an action would do."""
+
+    springs_added: int
+    springs_removed: int
+    cells_added: int
+    cells_removed: int
+    figures: Figures
+    """Figures after it."""
+    added: list[float]
+    """Ends of the springs that would come, six numbers each [m]; empty if they are very many."""
+    removed: list[float]
+    """Ends of the springs that would go, six numbers each [m]; empty if they are very many."""
 
 
 class CellTypeChoice(_Message):
@@ -299,6 +327,8 @@ class DocumentState(_Message):
     framework: dict[str, Any]
     stiffness: float
     ring_factor: float
+    spring_groups: list[SpringGroupLine]
+    """What is said of some springs; of two that say the same of a spring, the later counts."""
     looking: Looked | None
     """What is shown instead of the design; figures and net are of that."""
 
@@ -354,8 +384,10 @@ class Reply(_Message):
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
-    cells: list[Address] = []
+    cells: list[Address] = Field(default=[])
     """Cells that the action made or changed."""
+    preview: PreviewState | None = None
+    """What was asked by `preview`."""
 
 
 class Problem(_Message):

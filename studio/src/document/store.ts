@@ -2,26 +2,36 @@
 import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
-import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
+import type { DocumentState, PreviewState, Protocol, Reply, RunState } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
 import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
+import type { Section } from "./section";
 import { NOTHING, type Selection, stillThere } from "./selection";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "cut" | "add";
+export type ToolId = "pull" | "subdivide" | "retype" | "cut" | "add";
 
 /** How the net is shown. */
 export interface View {
   colour: ColourChoice;
-  /** Whether springs are drawn thicker the more force they carry. */
+  /** Whether springs are drawn thicker the more they have of what they are coloured by. */
   thickness: boolean;
   cells: boolean;
   nodes: boolean;
   anchors: boolean;
   reactions: boolean;
+  section: Section | null;
+}
+
+/** What an action would do, while somebody considers it. */
+export interface Preview {
+  label: string;
+  /** null: it can't be done. */
+  state: PreviewState | null;
+  problem: string;
 }
 
 /** What the pointer is over, and where on the page [px]. */
@@ -47,9 +57,12 @@ export interface State {
   individuals: Individuals;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
+  preview: Preview | null;
   selection: Selection;
   hover: Hover | null;
   tool: ToolId;
+  /** Type that the brush gives to cells. */
+  brushType: string;
   view: View;
   theme: Theme;
   /** Label of what the engine is busy with; empty if it answers at once. */
@@ -65,6 +78,7 @@ const VIEW: View = {
   nodes: false,
   anchors: true,
   reactions: false,
+  section: null,
 };
 
 const KEPT = "springform view";
@@ -94,9 +108,11 @@ export const store = createStore<State>()(() => ({
   run: null,
   individuals: NO_INDIVIDUALS,
   gallery: false,
+  preview: null,
   selection: NOTHING,
   hover: null,
   tool: "pull",
+  brushType: "6",
   busy: "",
   notice: null,
   ...keptView(),
@@ -120,6 +136,7 @@ export function openDocument(id: string): void {
     motion: null,
     run: null,
     individuals: NO_INDIVIDUALS,
+    preview: null,
     selection: NOTHING,
     hover: null,
     busy: "",
@@ -156,6 +173,12 @@ export async function ask(request: Asking, label = "Working"): Promise<Reply | n
     clearTimeout(timer);
     store.setState({ busy: "" });
   }
+}
+
+/** Asks the engine something that nobody waits for; throws `Error` with its problem. */
+export async function askQuietly(request: Asking): Promise<Reply> {
+  if (!connection) throw new Error("no document is open");
+  return connection.ask(request);
 }
 
 /** Tells the engine something that it does not answer. */
@@ -223,6 +246,7 @@ function takeFrame({ header, arrays }: Frame): void {
       net: next,
       motion: null,
       hover: null,
+      preview: null,
       selection: stillThere(selection, next),
     });
     return;

@@ -1,9 +1,9 @@
 // The tools at the left edge.
-import { Brush, Hand, Scissors, Waypoints } from "lucide-react";
+import { Brush, Hand, PaintBucket, Scissors, Waypoints } from "lucide-react";
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
-import { IconButton } from "./parts";
+import { Choice, IconButton } from "./parts";
 import { useStudio } from "./use";
 
 const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
@@ -13,6 +13,7 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
     help: "Click to select. Drag a node to pull the net, an anchor to move it; Shift: up and down, Ctrl: level.",
   },
   { id: "subdivide", icon: <Brush />, help: "Brush over cells to subdivide them." },
+  { id: "retype", icon: <PaintBucket />, help: "Brush over cells to give them the type" },
   { id: "cut", icon: <Scissors />, help: "Click a spring to cut it." },
   {
     id: "add",
@@ -47,5 +48,27 @@ export function ToolRail() {
 /** What the tool in the hand does, in a line over the net. */
 export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
-  return <p className="tool-help">{TOOLS.find(({ id }) => id === tool)!.help}</p>;
+  return (
+    <div className="tool-help">
+      <span>{TOOLS.find(({ id }) => id === tool)!.help}</span>
+      {tool === "retype" && <BrushType />}
+    </div>
+  );
+}
+
+function BrushType() {
+  const types = useStudio((state) => state.document?.cell_types ?? []);
+  const wanted = useStudio((state) => state.brushType);
+  return (
+    <Choice
+      label="Type of the brush"
+      hidden
+      value={wanted}
+      options={types.map(({ word, name }) => ({
+        value: word,
+        name: word === name ? word : `${word} ${name}`,
+      }))}
+      onTake={(brushType) => store.setState({ brushType })}
+    />
+  );
 }

@@ -11,6 +11,7 @@ import {
   Undo2,
 } from "lucide-react";
 import { commandOf } from "./commands";
+import { DocumentMenu } from "./DocumentMenu";
 import { useDialogs } from "./dialogs";
 import { Hint, IconButton, Keys } from "./parts";
 import { useStage, useStudio } from "./use";
@@ -108,7 +109,7 @@ function Title() {
         : "kept on this machine";
   return (
     <div className="title">
-      <h1>{document.name}</h1>
+      <DocumentMenu />
       <span className={line === "open" ? "" : "warning"}>{state}</span>
     </div>
   );
