@@ -60,7 +60,8 @@ def evolve(
 ) -> Run:
     """Evolve a design and return the run; parameters are those of `Parameters`, by name.
 
-    `genes` may be patches or their files, `within` a selection as text. Types that genes define and
+    `genes` may be patches or their files; `within` and the keys of `cell_weights` selections as
+    text. Types that genes define and
     the design lacks are added to it.
     `out` is the run folder; without it the run lives in a temporary folder as long as the result.
     `threads` is the number of threads, by default one a core; it does not change the result.
@@ -175,6 +176,12 @@ def _prepared(design: Design, parameters: dict[str, Any]) -> tuple[Design, dict[
             design = design.with_cell_types(gene.cell_types)
     if isinstance(parameters.get("within"), (str, _core.Selection)):
         parameters["within"] = select(design, parameters["within"]).addresses
+    if parameters.get("cell_weights"):
+        parameters["cell_weights"] = {
+            address: factor
+            for cells, factor in parameters["cell_weights"].items()
+            for address in select(design, cells).addresses
+        }
     return design, parameters
 
 

@@ -103,6 +103,11 @@ class Parameters(BaseModel):
     """Mutate by orbits, so that every individual keeps the symmetries of the framework."""
     within: Annotated[tuple[str, ...], Field(min_length=1, strict=False)] | None = None
     """Addresses of the cells within which mutation stays."""
+    cell_weights: dict[str, Annotated[float, Field(ge=0, le=1e6)]] = {}
+    """Factors, by address, on the chance that a cell or one that descends from it is drawn.
+
+    The nearest one counts; 0: never drawn, nor changed by a step on the cells above it.
+    """
     until_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
     """End once the parent has this many springs."""
     until_differential: Annotated[float, Field(gt=0)] | None = None

@@ -99,6 +99,14 @@ def evolve_command(
     within: Annotated[
         str | None, typer.Option(help='Cells within which mutation stays, as "rings(A7, 2)".')
     ] = None,
+    cell_weights: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--cell-weight",
+            help='Factor on the chance that cells are drawn, as "rings(A7, 2)=4"; 0: kept as they '
+            "are. May be given again.",
+        ),
+    ] = None,
     until_springs: Annotated[
         int | None, typer.Option(help="End once the parent has this many springs.")
     ] = None,
@@ -132,6 +140,7 @@ def evolve_command(
         "grafts": grafts,
         "symmetry": symmetry,
         "within": within,
+        "cell_weights": cell_weights_of(cell_weights or []) or None,
         "until_springs": until_springs,
         "until_differential": until_differential,
         "until_suf": until_suf,
@@ -183,6 +192,21 @@ def show(
     report = {name: table[name][row].item() for name in ("springs", "force_differential", "suf")}
     save(design, out)
     print_report(report, as_json)
+
+
+def cell_weights_of(texts: list[str]) -> dict[str, float]:
+    """Return factors by selection. Raises `InputError`: not ``SELECTION=FACTOR``."""
+    factors: dict[str, float] = {}
+    for text in texts:
+        cells, _, factor = text.rpartition("=")
+        try:
+            factors[cells.strip()] = float(factor)
+        except ValueError:
+            cells = ""
+        if not cells.strip():
+            problem = f"must be cells and a factor, such as 12.0=4, not {text!r}"
+            raise InputError(problem, key="--cell-weight")
+    return factors
 
 
 def gene_files(paths: list[Path]) -> list[Path]:

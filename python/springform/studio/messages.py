@@ -177,6 +177,26 @@ class Reinstate(_Message):
     id: int
 
 
+class LiveEvolve(_Message):
+    """Let the net evolve before one's eyes, steer it, and keep or discard what it grew."""
+
+    type: Literal["live_evolve"] = "live_evolve"
+    id: int
+    what: Literal["start", "pause", "continue", "change", "keep", "discard"]
+    parameters: dict[str, Any] = {}
+
+
+class WeighCells(_Message):
+    """Brush a factor on the chance that evolution changes cells, and what descends from them."""
+
+    type: Literal["weigh_cells"] = "weigh_cells"
+    id: int
+    cells: Annotated[list[Address], Field(max_length=100_000)]
+    """None at all with no factor: all cells."""
+    factor: Annotated[float, Field(ge=0, le=1e6)] | None
+    """0: keep out; None: as if nothing had been brushed."""
+
+
 class Hold(_Message):
     """Hold a node somewhere for as long as it is dragged."""
 
@@ -214,6 +234,8 @@ Request = Annotated[
     | Look
     | Follow
     | Reinstate
+    | LiveEvolve
+    | WeighCells
     | Hold
     | Release
     | Received,
@@ -338,6 +360,30 @@ class RunState(_Message):
     rows: list[GenerationRow]
 
 
+class LivePoint(_Message):
+    """What a generation of live evolution gave."""
+
+    generation: int
+    springs: int
+    force_differential: float | None
+
+
+class LiveState(_Message):
+    """Live evolution, and the cells that were brushed."""
+
+    type: Literal["live"] = "live"
+    status: Literal["none", "running", "paused", "failed"] = "none"
+    reason: str = ""
+    generation: int = 0
+    rate: float = 0.0
+    """Generations a second."""
+    points: list[LivePoint] = []
+    """Of the last generations."""
+    parameters: dict[str, Any] = {}
+    weights: dict[str, float] = {}
+    """Factors by address of cells."""
+
+
 class Welcome(_Message):
     """First message to a window."""
 
@@ -365,7 +411,7 @@ class Problem(_Message):
     message: str
 
 
-Event = Annotated[DocumentState | RunState | Welcome | Reply | Problem, Field(discriminator="type")]
+Event = Annotated[DocumentState | RunState | LiveState | Welcome | Reply | Problem, Field(discriminator="type")]
 
 
 # --- headers of binary frames ---------------------------------------------------------------------

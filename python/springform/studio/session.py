@@ -23,6 +23,8 @@ from .changes import Action, values_of
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .library import file_hash
+from .live import Grown
+from .live_stage import LiveStage
 from .messages import (
     REQUEST,
     AnchorState,
@@ -32,9 +34,11 @@ from .messages import (
     Follow,
     HistoryLine,
     Hold,
+    LiveEvolve,
     Look,
     Looked,
     Move,
+    MoveAnchor,
     Problem,
     Received,
     Reinstate,
@@ -47,11 +51,12 @@ from .messages import (
     TableHeader,
     Travel,
     Undo,
+    WeighCells,
     Welcome,
     protocol,
 )
 from .motion import Motion, State
-from .telling import cell_types_of, figures_of, motion_frame, picture_of
+from .telling import cell_types_of, figures_of, motion_frame, picture_of, state_of
 
 _FRAMES_ON_THE_WAY = 3
 """Frames of motion that a window may not yet have drawn; more would only make it lag."""
@@ -117,6 +122,7 @@ class Session:
         self._looking: tuple[Looked, Design, Figures] | None = None
         self._following = False
         self._run: Evolving | None = self._newest_run()
+        self._live = LiveStage(self._tell_all, self._show_grown)
         self._run_told = 0.0
         self._run_waits = False
         self._revision = 0
@@ -135,6 +141,7 @@ class Session:
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
+            await self._live.close()
             if self._run is not None:
                 await asyncio.to_thread(self._run.stop)
             self._motion.close()
@@ -151,12 +158,15 @@ class Session:
             self._windows.add(window)
             window.tell(self._document_state())
             self._tell_run(window)
+            window.tell(self._live.state())
         return window
 
     def leave(self, window: Window) -> None:
         """Forget a window and let go what it holds."""
         self._windows.discard(window)
         self._motion.release(window)
+        if not self._windows:
+            self._live.pause()
 
     async def outgoing(self, window: Window) -> AsyncIterator[str | bytes]:
         """Yield what a window is to be sent, for as long as somebody asks."""
@@ -214,7 +224,10 @@ class Session:
             case Hold():
                 if request.node not in self.node_rows:
                     raise InputError("is no node of the net", key=request.node)
-                self._motion.hold(window, request.node, np.array(request.position))
+                if self._live.live is None:
+                    self._motion.hold(window, request.node, np.array(request.position))
+                else:
+                    self._live.move_anchor(self._anchor_at(request.node), request.position)
             case Release():
                 self._motion.release(window)
             case Move():
@@ -236,6 +249,14 @@ class Session:
         match request:
             case Evolve() | SteerRun():
                 await self._steer(request)
+                return []
+            case LiveEvolve():
+                await self._steer_live(request)
+            case WeighCells():
+                await self._live.weigh(request)
+                return []
+            case MoveAnchor() if self._live.live is not None:
+                self._live.move_anchor(request.anchor, request.position)
                 return []
             case Look():
                 self._following = False
@@ -335,6 +356,36 @@ class Session:
             self._journal.belong_to(settings.file, now)
         return held.to_file()
 
+    # --- live evolution ------------------------------------------------------------------------
+
+    async def _steer_live(self, request: LiveEvolve) -> None:
+        if request.what == "start":
+            self._check_design_is_shown()
+            self._following = False
+        kept = await self._live.steer(request, self.design)
+        if kept is not None:
+            design, generation = kept
+            label = f"Evolve live, {generation} generation{'' if generation == 1 else 's'}"
+            await self.act(lambda: (commands.whole(self.design, design, label), []))
+        elif request.what == "discard":
+            self._take_design()
+
+    def _show_grown(self, grown: Grown) -> None:
+        self._revision += 1
+        self._node_keys = set(grown.design.nodes)
+        self._keep_net(grown.design, grown.tables)
+        self._motion.place(grown.design.nodes, grown.equilibrium.positions)
+        self._state, self._state_frame = state_of(grown.equilibrium, self._revision), b""
+        for window in self._windows:
+            window.wake()
+
+    def _anchor_at(self, node: str) -> str:
+        design = self.design
+        rows = dict(zip((design.nodes[row] for row in design.anchors), design.anchor_names, strict=True))
+        if node not in rows:
+            raise InputError("is no anchor; while the net evolves only anchors can be dragged", key=node)
+        return rows[node]
+
     # --- the run -------------------------------------------------------------------------------
 
     def _newest_run(self) -> Evolving | None:
@@ -352,11 +403,14 @@ class Session:
     async def _steer(self, request: Evolve | SteerRun) -> None:
         run = self._run
         if isinstance(request, Evolve):
+            if self._live.live is not None:
+                raise InputError("the net evolves; keep or discard what it grew first")
             if run is not None and run.status in ("running", "paused"):
                 await asyncio.to_thread(run.stop)
             runs = self._journal.folder / "runs"
             run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
-            await self._in_thread(lambda: run.start(self.design, request.parameters))
+            values = {"cell_weights": self._live.weights} | request.parameters
+            await self._in_thread(lambda: run.start(self.design, values))
             self._run, self._following = run, True
             for window in self._windows:
                 window.generations = 0
@@ -382,6 +436,8 @@ class Session:
         if generation is None:
             self._looking = None
         else:
+            if self._live.live is not None:
+                raise InputError("the net evolves; keep or discard what it grew first")
             run = self._known_run()
 
             def rebuild() -> tuple[Looked, Design, Figures]:
@@ -422,6 +478,8 @@ class Session:
         return picture_of(self._known_run().individual(generation, individual))
 
     def _check_design_is_shown(self) -> None:
+        if self._live.live is not None:
+            raise InputError("the net evolves; keep or discard what it grew first")
         if self._looking is not None:
             raise InputError("this is not your design; take it over, or go back to your design")
 
@@ -527,9 +585,12 @@ class Session:
         self._revision += 1
         design = self.design if self._looking is None else self._looking[1]
         self._node_keys = set(design.nodes)
-        self._nets[self._revision] = (design, tables_of(design))
-        self._nets.pop(self._revision - _NETS_KEPT, None)
+        self._keep_net(design, tables_of(design))
         self._motion.take(design, self._revision)
+
+    def _keep_net(self, design: Design, tables: Tables) -> None:
+        self._nets[self._revision] = (design, tables)
+        self._nets.pop(self._revision - _NETS_KEPT, None)
 
     def _measure(self) -> None:
         position = self._journal.document.position
@@ -543,7 +604,13 @@ class Session:
         for window in self._windows:
             window.tell(state)
 
+    def _tell_all(self, event: BaseModel) -> None:
+        for window in self._windows:
+            window.tell(event)
+
     def _moved(self, state: State) -> None:
+        if self._live.live is not None:
+            return  # a last step of the net that was shown before
         self._state, self._state_frame = state, b""
         for window in self._windows:
             window.wake()
