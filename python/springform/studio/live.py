@@ -20,8 +20,17 @@ from .frames import Tables, tables_of
 
 Status = Literal["running", "paused", "failed"]
 
-DEFAULTS: dict[str, Any] = {"population": 100, "max_springs": 2000}
-"""Parameters of live evolution that differ from a run's: the net stays small enough to be quick."""
+DEFAULTS: dict[str, Any] = {
+    "population": 100,
+    "insertions": "1",
+    "toggles": "2",
+    "max_springs": 2000,
+}
+"""Parameters of live evolution that differ from a run's.
+
+The net stays small enough to be quick; once it is full, as much is taken away as is added, so that
+evolution goes on.
+"""
 
 _SHORTEST = 1 / 40
 """Shortest time between generations [s]: eyes follow no faster."""

@@ -2,16 +2,17 @@
 import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
-import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
+import type { DocumentState, LiveState, Protocol, Reply, RunState } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
 import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
 import { NOTHING, type Selection, stillThere } from "./selection";
+import { GROW } from "./weights";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "cut" | "add";
+export type ToolId = "pull" | "subdivide" | "cut" | "add" | "weigh";
 
 /** How the net is shown. */
 export interface View {
@@ -44,6 +45,9 @@ export interface State {
   net: Net | null;
   motion: Motion | null;
   run: Run | null;
+  live: LiveState | null;
+  /** Factor that the brush gives to cells; null takes factors away. */
+  brush: number | null;
   individuals: Individuals;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
@@ -92,6 +96,8 @@ export const store = createStore<State>()(() => ({
   net: null,
   motion: null,
   run: null,
+  live: null,
+  brush: GROW,
   individuals: NO_INDIVIDUALS,
   gallery: false,
   selection: NOTHING,
@@ -119,6 +125,7 @@ export function openDocument(id: string): void {
     net: null,
     motion: null,
     run: null,
+    live: null,
     individuals: NO_INDIVIDUALS,
     selection: NOTHING,
     hover: null,
@@ -186,6 +193,7 @@ function takeEvent(event: Protocol["event"]): void {
   if (event.type === "document") store.setState({ document: event });
   if (event.type === "problem") notify(event.message);
   if (event.type === "run") takeRun(event);
+  if (event.type === "live") store.setState({ live: event });
 }
 
 const TABLE_EVERY = 500; // ms

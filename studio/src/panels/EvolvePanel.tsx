@@ -3,6 +3,7 @@ import { Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
 import { inDigits } from "../document/scale";
 import { ask, store } from "../document/store";
+import { LiveSection } from "./LivePanel";
 import { Choice, Fact, NumberField, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
@@ -56,6 +57,7 @@ export function EvolvePanel() {
   const status = run?.state.status ?? "none";
   return (
     <>
+      <LiveSection />
       {run && status !== "none" && <Course />}
       {run && run.rows.length > 0 && (
         <Section title="Individuals" aside={<GalleryButton />}>
@@ -115,13 +117,13 @@ function Course() {
       </div>
       {last && (
         <>
-          <RunGraph run={run} of="differential" />
+          <RunGraph rows={run.rows} of="differential" />
           <p className="graph-words">
             <i className="swatch accent" /> parent’s differential{" "}
             <b>{inDigits(last.force_differential, 4)}</b>
             <i className="swatch band" /> population
           </p>
-          <RunGraph run={run} of="springs" />
+          <RunGraph rows={run.rows} of="springs" />
           <p className="graph-words">
             <i className="swatch good" /> springs <b>{last.springs.toLocaleString("en")}</b>
           </p>

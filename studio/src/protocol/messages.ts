@@ -21,10 +21,12 @@ export interface Protocol {
     | Look
     | Follow
     | Reinstate
+    | LiveEvolve
+    | WeighCells
     | Hold
     | Release
     | Received;
-  event: DocumentState | RunState | Welcome | Reply | Problem;
+  event: DocumentState | RunState | LiveState | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
@@ -203,6 +205,34 @@ export interface Reinstate {
   id: number;
 }
 /**
+ * Let the net evolve before one's eyes, steer it, and keep or discard what it grew.
+ */
+export interface LiveEvolve {
+  type: "live_evolve";
+  id: number;
+  what: "start" | "pause" | "continue" | "change" | "keep" | "discard";
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Brush a factor on the chance that evolution changes cells, and what descends from them.
+ */
+export interface WeighCells {
+  type: "weigh_cells";
+  id: number;
+  /**
+   * None at all with no factor: all cells.
+   *
+   * @maxItems 100000
+   */
+  cells: string[];
+  /**
+   * 0: keep out; None: as if nothing had been brushed.
+   */
+  factor: number | null;
+}
+/**
  * Hold a node somewhere for as long as it is dragged.
  */
 export interface Hold {
@@ -376,6 +406,40 @@ export interface GenerationRow {
    * Parameters were changed after it.
    */
   changed: boolean;
+}
+/**
+ * Live evolution, and the cells that were brushed.
+ */
+export interface LiveState {
+  type: "live";
+  status: "none" | "running" | "paused" | "failed";
+  reason: string;
+  generation: number;
+  /**
+   * Generations a second.
+   */
+  rate: number;
+  /**
+   * Of the last generations.
+   */
+  points: LivePoint[];
+  parameters: {
+    [k: string]: unknown;
+  };
+  /**
+   * Factors by address of cells.
+   */
+  weights: {
+    [k: string]: number;
+  };
+}
+/**
+ * What a generation of live evolution gave.
+ */
+export interface LivePoint {
+  generation: number;
+  springs: number;
+  force_differential: number | null;
 }
 /**
  * First message to a window.

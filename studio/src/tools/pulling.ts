@@ -25,11 +25,13 @@ export class Pulling implements Tool {
   private held: Held | null = null;
 
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
-    const { net, motion } = store.getState();
+    const { net, motion, live } = store.getState();
     if (hit?.kind !== "node" || !net || !motion) return false;
     const place = positionOf(motion, hit.row);
     const seen = viewport.project(place) ?? [pointer.x, pointer.y];
     const number = net.anchors.indexOf(hit.row);
+    // While the net evolves it can only be pulled by its anchors.
+    if (number < 0 && (live?.status ?? "none") !== "none") return false;
     this.held = {
       key: net.nodes[hit.row],
       anchor: number < 0 ? null : net.anchorNames[number],

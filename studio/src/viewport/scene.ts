@@ -7,6 +7,7 @@ import { type Colour, kindColour } from "../document/palettes";
 import { plainType } from "../document/quantities";
 import { selectedRows } from "../document/selection";
 import { type State, store } from "../document/store";
+import { factorOf } from "../document/weights";
 import { Eye, type StandardView } from "./camera";
 import { Hairlines } from "./hairlines";
 import { type Hit, Projection, pick } from "./picking";
@@ -18,6 +19,8 @@ const GROUND: Record<State["theme"], string> = { dark: "#0e1117", light: "#f6f7f
 const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22, 26, 33] };
 const ANCHOR: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [30, 36, 45] };
 const ARROW: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+const GROW_HERE: Record<State["theme"], Colour> = { dark: [86, 197, 150], light: [13, 107, 64] };
+const KEEP_OUT: Record<State["theme"], Colour> = { dark: [255, 110, 100], light: [179, 42, 36] };
 const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
 
 /** Widths of springs [px]. */
@@ -172,7 +175,15 @@ export class Viewport {
         this.eye.fit("perspective", false);
       }
     }
-    const seen: (keyof State)[] = ["motion", "selection", "hover", "view", "theme", "document"];
+    const seen: (keyof State)[] = [
+      "motion",
+      "selection",
+      "hover",
+      "view",
+      "theme",
+      "document",
+      "live",
+    ];
     if (!before || seen.some((key) => state[key] !== before[key])) this.redraw(true);
   }
 
@@ -290,7 +301,7 @@ export class Viewport {
   }
 
   private updateSkin(
-    { view, selection, theme, hover }: State,
+    { view, selection, theme, hover, live }: State,
     net: Net,
     motion: NonNullable<State["motion"]>,
   ): void {
@@ -299,9 +310,23 @@ export class Viewport {
     else this.skin.clear();
     const cells = new Set([...selectedRows(net, selection, "cells"), ...this.brushed]);
     if (hover?.kind === "cell") cells.add(hover.row);
+    const weights = live?.weights ?? {};
+    const factors = new Map<number, number>();
+    if (Object.keys(weights).length)
+      net.addresses.forEach((address, cell) => {
+        const factor = factorOf(weights, address);
+        if (factor !== 1) factors.set(cell, factor);
+      });
+    for (const cell of factors.keys()) cells.add(cell);
+    const weighed = (cell: number) =>
+      (factors.get(cell) ?? 1) < 1 ? KEEP_OUT[theme] : GROW_HERE[theme];
     const chosen = new Set(selectedRows(net, selection, "cells"));
     this.markedSkin.set(net, motion, cells, (cell) =>
-      this.brushed.has(cell) ? MARK[theme] : chosen.has(cell) ? INK[theme] : MARK[theme],
+      chosen.has(cell) && !this.brushed.has(cell)
+        ? INK[theme]
+        : factors.has(cell) && hover?.row !== cell
+          ? weighed(cell)
+          : MARK[theme],
     );
   }
 }
