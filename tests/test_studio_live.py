@@ -1,4 +1,4 @@
-"""Live evolution: the engine evolves, anchors are moved and cells brushed, and one action keeps it."""
+"""Live evolution: anchors are moved and cells brushed meanwhile, and one action keeps it."""
 
 from __future__ import annotations
 

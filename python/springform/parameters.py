@@ -14,6 +14,7 @@ from pydantic import (
     ConfigDict,
     Field,
     ValidationError,
+    create_model,
 )
 
 from .errors import InputError
@@ -147,6 +148,29 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
         raise InputError(f"unknown parameter; {nearest(key, Parameters.model_fields)}", key=key)
     problem = fault["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     raise InputError(f"{problem}, not {fault['input']!r}", key=key)
+
+
+def read_parameter(name: str, text: str) -> Any:
+    """Return the value of a parameter from text; ``none`` takes a limit away.
+
+    Raises `InputError`: there is no such parameter, or this is no value of it.
+    """
+    if name not in Parameters.model_fields:
+        raise InputError(f"unknown parameter; {nearest(name, Parameters.model_fields)}", key=name)
+    field = Parameters.model_fields[name]
+    if text == "none" and field.default is None:
+        return None
+    if name == "types":
+        return _listed(text)
+    try:
+        return (
+            create_model("_One", value=(field.annotation, field))
+            .model_validate_strings({"value": text})
+            .value
+        )
+    except ValidationError as error:
+        problem = error.errors(include_url=False)[-1]["msg"].removeprefix("Value error, ")
+        raise InputError(f"{problem}, not {text!r}", key=name) from None
 
 
 def _in_order(parameters: Parameters) -> Parameters:

@@ -91,3 +91,16 @@ test("framework", async ({ page, open }) => {
   await page.getByRole("tab", { name: "Framework" }).click();
   await take(page, "framework");
 });
+
+test("live", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Keep out", exact: true }).click();
+  await clickCellAbove(page, await anchorPlace(page, "A4"));
+  await page.getByRole("button", { name: "Grow here" }).click();
+  await clickCellAbove(page, await anchorPlace(page, "A9"));
+  await take(page, "live-start");
+  await page.getByRole("button", { name: "Evolve live" }).click();
+  await page.waitForTimeout(4000);
+  await take(page, "live");
+});

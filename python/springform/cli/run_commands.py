@@ -6,18 +6,19 @@ import shlex
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ..design import save
 from ..errors import InputError
-from ..evolution import OnGeneration, evolve, resume
+from ..evolution import OnGeneration, evolve, resume, steer
 from ..evolution import Progress as GenerationProgress
 from ..files import WriteError
-from ..parameters import Parameters
+from ..parameters import Parameters, read_parameter
 from ..run import Run, open_run
 from ..run_format import is_run
+from ..steering import ASKED
 from .terminal import (
     DesignArgument,
     Json,
@@ -171,6 +172,40 @@ def resume_command(
 
     total = before.parameters.generations if generations is None else generations
     _report_run(_drive(go_on, run, total, before.generations), began, as_json)
+
+
+@commands.command(
+    "steer", epilog="Example: `springform steer runs/a change insertions=5% weighting=deep`"
+)
+def steer_command(
+    run: RunArgument,
+    what: Annotated[
+        str, typer.Argument(metavar="WHAT", help="pause, continue, stop, or change parameters.")
+    ],
+    changes: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME=VALUE]...", help="Parameters to change, as those of evolve."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Ask whoever drives a run for something; done between two generations."""
+    asked = next((word for word in ASKED if word == what), None)
+    if asked is None:
+        raise InputError(f"must be one of {', '.join(ASKED)}, not {what!r}", key="WHAT")
+    driver = steer(run, asked, **parameters_of(changes or []))
+    print_report({"asked": asked, "driver": driver.program, "process": driver.pid}, as_json)
+
+
+def parameters_of(texts: list[str]) -> dict[str, Any]:
+    """Return parameters from ``name=value``. Raises `InputError`: no such, or no such value."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"must be a name and a value, such as insertions=5%, not {text!r}")
+        name = name.strip().replace("-", "_")
+        found[name] = read_parameter(name, value.strip())
+    return found
 
 
 @commands.command(

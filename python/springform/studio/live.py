@@ -1,4 +1,4 @@
-"""Live evolution: the net evolves before one's eyes while anchors are dragged and cells are brushed."""
+"""Live evolution: the net evolves while anchors are dragged and cells are brushed."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ class Point:
 class Live:
     """Evolves a design in a thread of its own, generation by generation; safe to call from any.
 
-    Attributes: `status`, `reason` (why it failed), `parameters`, `points` (of the last generations),
-    `start` (the design that it began with).
+    Attributes: `status`, `reason` (why it failed), `parameters`, `points` (of the last
+    generations), `start` (the design that it began with).
     """
 
     def __init__(self, design: Design, parameters: Mapping[str, Any], tell: Callable[[], None]):

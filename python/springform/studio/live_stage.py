@@ -1,4 +1,4 @@
-"""Live evolution of one document: what windows ask of it, what they are told, and the brushed cells."""
+"""Live evolution of one document, and the cells that were brushed."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class LiveStage:
         return self.live
 
     def _grew(self) -> None:
-        """Called in the thread of the evolution: its net is shown, and soon its figures are told."""
+        """Called in the evolution's thread: show its net, and soon tell its figures."""
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._grown_now)
 

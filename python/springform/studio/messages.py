@@ -351,6 +351,8 @@ class RunState(_Message):
     status: Literal["none", "running", "paused", "ended", "failed"]
     reason: str
     folder: str
+    driver: str
+    """Another process that drives it; empty: this studio does, or nobody."""
     following: bool
     parameters: dict[str, Any]
     generations: int
@@ -411,7 +413,9 @@ class Problem(_Message):
     message: str
 
 
-Event = Annotated[DocumentState | RunState | LiveState | Welcome | Reply | Problem, Field(discriminator="type")]
+Event = Annotated[
+    DocumentState | RunState | LiveState | Welcome | Reply | Problem, Field(discriminator="type")
+]
 
 
 # --- headers of binary frames ---------------------------------------------------------------------

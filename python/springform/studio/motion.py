@@ -93,7 +93,7 @@ class Motion:
             self._disturb()
 
     def place(self, nodes: list[str], positions: Floats) -> None:
-        """Note where something else showed the nodes, (n, 3) [m]: the next net starts from there."""
+        """Note where nodes were shown, (n, 3) [m]: the next net starts from there."""
         with self._changed:
             self._network, self._nodes, self._positions = None, nodes, positions
             self._placed += 1

@@ -381,17 +381,20 @@ class Session:
 
     def _anchor_at(self, node: str) -> str:
         design = self.design
-        rows = dict(zip((design.nodes[row] for row in design.anchors), design.anchor_names, strict=True))
-        if node not in rows:
-            raise InputError("is no anchor; while the net evolves only anchors can be dragged", key=node)
-        return rows[node]
+        for row, name in zip(design.anchors, design.anchor_names, strict=True):
+            if design.nodes[row] == node:
+                return name
+        problem = "is no anchor; while the net evolves only anchors can be dragged"
+        raise InputError(problem, key=node)
 
     # --- the run -------------------------------------------------------------------------------
 
     def _newest_run(self) -> Evolving | None:
         """Return the run that the document had last, to look at and to go on with."""
-        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"))
-        for folder in reversed(folders):
+        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"), reverse=True)
+        if self._journal.settings.run is not None:
+            folders.append(Path(self._journal.settings.run))
+        for folder in folders:
             run = Evolving(folder, self._run_changed)
             try:
                 run.open()
@@ -405,7 +408,7 @@ class Session:
         if isinstance(request, Evolve):
             if self._live.live is not None:
                 raise InputError("the net evolves; keep or discard what it grew first")
-            if run is not None and run.status in ("running", "paused"):
+            if run is not None:
                 await asyncio.to_thread(run.stop)
             runs = self._journal.folder / "runs"
             run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
@@ -421,8 +424,8 @@ class Session:
         elif request.what == "continue":
             await self._in_thread(run.go_on)
         elif request.what == "pause":
-            run.pause()
-        else:
+            await self._in_thread(run.pause)
+        elif not await self._in_thread(run.end_driver):
             await asyncio.to_thread(run.stop)
         self._tell_runs()
 
@@ -524,6 +527,7 @@ class Session:
                 status="none" if run is None else run.status,
                 reason="" if run is None else run.reason,
                 folder="" if run is None else str(run.folder),
+                driver="" if run is None or run.driver is None else str(run.driver),
                 following=self._following,
                 parameters={} if run is None else run.parameters.model_dump(mode="json"),
                 generations=window.generations,

@@ -115,6 +115,11 @@ function Course() {
           Follow in the view
         </label>
       </div>
+      {run.state.driver && (
+        <p className="explain">
+          Driven by {run.state.driver}, which does what you ask between two generations.
+        </p>
+      )}
       {last && (
         <>
           <RunGraph rows={run.rows} of="differential" />

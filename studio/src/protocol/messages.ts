@@ -366,6 +366,10 @@ export interface RunState {
   status: "none" | "running" | "paused" | "ended" | "failed";
   reason: string;
   folder: string;
+  /**
+   * Another process that drives it; empty: this studio does, or nobody.
+   */
+  driver: string;
   following: boolean;
   parameters: {
     [k: string]: unknown;
