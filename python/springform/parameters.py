@@ -162,12 +162,10 @@ def read_parameter(name: str, text: str) -> Any:
         return None
     if name == "types":
         return _listed(text)
+    make: Any = create_model
     try:
-        return (
-            create_model("_One", value=(field.annotation, field))
-            .model_validate_strings({"value": text})
-            .value
-        )
+        one = make("One", value=(field.annotation, field))
+        return one.model_validate_strings({"value": text}).value
     except ValidationError as error:
         problem = error.errors(include_url=False)[-1]["msg"].removeprefix("Value error, ")
         raise InputError(f"{problem}, not {text!r}", key=name) from None

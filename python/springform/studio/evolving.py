@@ -21,7 +21,8 @@ from ..parameters import Parameters, checked_parameters
 from ..run import STRATEGY, Run, open_run, start_evolution
 from ..run_writer import RunWriter, create, reopen
 from ..steering import Driver, Requests, driver_of, watch
-from .messages import GenerationRow
+from .choosing import AXES
+from .messages import GenerationRow, LineageStep
 
 Status = Literal["running", "paused", "ended", "failed"]
 
@@ -61,6 +62,7 @@ class Evolving:
         self._changed = threading.Condition()
         self._wanted: dict[str, Any] = {}
         self._parents: list[Design] = []
+        self._edits: list[list[str]] = []
         self._columns: list[Mapping[str, NDArray[Any]]] = []
         self._resumed: list[dict[str, Any]] = []
         self._algorithms: dict[int, _core.Evolution] = {}
@@ -175,8 +177,34 @@ class Evolving:
         edits = self._kept_algorithm(generation - 1).individual(individual)
         return self.parent(generation - 1).edited(edits)
 
+    def lineage(self, generation: int, individual: int | None) -> list[LineageStep]:
+        """Return the ancestors of a parent or an individual, and what each mutation changed.
+
+        The last comes last; generations in which the parent stayed are left out.
+        """
+        last = generation if individual is None else generation - 1
+        winners = [(number, self.rows[number - 1].winner) for number in range(1, last + 1)]
+        if individual is not None:
+            winners.append((generation, individual))
+        return [self._step(number, one) for number, one in winners if one is not None]
+
+    def _step(self, generation: int, individual: int) -> LineageStep:
+        columns = self._columns[generation - 1]
+        differential = float(columns["force_differential"][individual])
+        if self.rows[generation - 1].winner == individual:
+            edits = self._edits[generation - 1]
+        else:
+            edits = self._kept_algorithm(generation - 1).individual(individual)
+        return LineageStep(
+            generation=generation,
+            individual=individual,
+            springs=int(columns["springs"][individual]),
+            force_differential=differential if np.isfinite(differential) else None,
+            edits=list(edits),
+        )
+
     def columns(self, first: int) -> dict[str, NDArray[np.float32]]:
-        """Return springs and force differential of all individuals from a generation on."""
+        """Return the axes of all individuals from a generation on."""
         with self._changed:
             chosen = self._columns[max(0, first - 1) :]
         return {
@@ -184,7 +212,7 @@ class Evolving:
                 [np.asarray(columns[name], dtype=np.float32) for columns in chosen]
                 or [np.empty(0, dtype=np.float32)]
             )
-            for name in ("springs", "force_differential")
+            for name in AXES
         }
 
     # --- in the thread -------------------------------------------------------------------------
@@ -320,6 +348,7 @@ class Evolving:
         with self._changed:
             self._parents.append(self._parents[-1].edited(result["edits"]))
             self._columns.append(result["columns"])
+            self._edits.append(list(result["edits"]))
             self._resumed.append(
                 {
                     "parameters": self.parameters,
@@ -396,6 +425,7 @@ class Evolving:
             columns = {name: column[rows] for name, column in run.table.items()}
             self._parents.append(self._parents[-1].edited(line.edits))
             self._columns.append(columns)
+            self._edits.append(list(line.edits))
             changed = run.changed_after(number)
             self._resumed.append(
                 {

@@ -139,6 +139,8 @@ class Evolve(_Message):
 
     type: Literal["evolve"] = "evolve"
     id: int
+    looked: bool = False
+    """Breed from what is looked at instead."""
     parameters: dict[str, Any]
 
 
@@ -468,7 +470,7 @@ class MotionHeader(_Message):
 
 
 class TableHeader(_Message):
-    """Springs and force differentials of all individuals from a generation on."""
+    """Measures of all individuals from a generation on."""
 
     frame: Literal["table"] = "table"
     first: int
@@ -481,6 +483,47 @@ Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="f
 
 
 # --- what is fetched ------------------------------------------------------------------------------
+
+
+class LineageStep(_Message):
+    """An ancestor, or the individual itself: what its mutation changed."""
+
+    generation: int
+    individual: int
+    springs: int
+    force_differential: float | None
+    edits: list[str]
+    """Such as ``12.0 subdivide 1 1 6 1``."""
+
+
+class Lineage(_Message):
+    """Where an individual came from, the last step last."""
+
+    steps: list[LineageStep]
+
+
+class Brushes(_Message):
+    """Ask for clusters of what is brushed on axes."""
+
+    brushes: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]]
+    """Least and most by axis."""
+    count: int
+
+
+class Cluster(_Message):
+    """A cluster of individuals, by the one nearest to its middle."""
+
+    generation: int
+    individual: int
+    size: int
+
+
+class Clusters(_Message):
+    """Clusters of what is brushed, the largest first."""
+
+    brushed: int
+    """Individuals that are brushed."""
+    clusters: list[Cluster]
 
 
 class SceneEntry(_Message):
@@ -536,6 +579,9 @@ class Protocol(_Message):
     opening: Opening
     opened: Opened
     refusal: Refusal
+    lineage: Lineage
+    brushes: Brushes
+    clusters: Clusters
 
 
 class _PlainSchema(GenerateJsonSchema):

@@ -20,6 +20,7 @@ from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from . import commands, journal
 from .changes import Action, values_of
+from .choosing import brushed, clusters
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .library import file_hash
@@ -28,12 +29,16 @@ from .live_stage import LiveStage
 from .messages import (
     REQUEST,
     AnchorState,
+    Brushes,
+    Cluster,
+    Clusters,
     DocumentState,
     Evolve,
     Figures,
     Follow,
     HistoryLine,
     Hold,
+    Lineage,
     LiveEvolve,
     Look,
     Looked,
@@ -413,7 +418,8 @@ class Session:
             runs = self._journal.folder / "runs"
             run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
             values = {"cell_weights": self._live.weights} | request.parameters
-            await self._in_thread(lambda: run.start(self.design, values))
+            start = self._start_of(request)
+            await self._in_thread(lambda: run.start(start, values))
             self._run, self._following = run, True
             for window in self._windows:
                 window.generations = 0
@@ -428,6 +434,13 @@ class Session:
         elif not await self._in_thread(run.end_driver):
             await asyncio.to_thread(run.stop)
         self._tell_runs()
+
+    def _start_of(self, request: Evolve) -> Design:
+        if not request.looked:
+            return self.design
+        if self._looking is None:
+            raise InputError("look at an individual first")
+        return self._looking[1]
 
     async def _follow(self, on: bool) -> None:
         self._following = on
@@ -475,6 +488,31 @@ class Session:
         run = self._known_run()
         header = TableHeader(first=first, population=run.parameters.population, arrays=[])
         return encode(header, run.columns(first))
+
+    def lineage(self, generation: int, individual: int | None) -> Lineage:
+        """Return where a parent or an individual of the run came from."""
+        run = self._known_run()
+        if not 1 <= generation <= len(run.rows):
+            raise InputError(f"there are generations 1 to {len(run.rows)}")
+        if individual is not None and not 0 <= individual < run.parameters.population:
+            raise InputError(f"there are individuals 0 to {run.parameters.population - 1}")
+        return Lineage(steps=run.lineage(generation, individual))
+
+    def clusters(self, asked: Brushes) -> Clusters:
+        """Return clusters of the individuals that are brushed."""
+        run = self._known_run()
+        columns: dict[str, Any] = dict(run.columns(1))
+        population = run.parameters.population
+        columns["generation"] = np.arange(len(columns["springs"])) // population + 1
+        rows = np.flatnonzero(brushed(columns, asked.brushes))
+        found = clusters(columns, rows, asked.count)
+        return Clusters(
+            brushed=len(rows),
+            clusters=[
+                Cluster(generation=row // population + 1, individual=row % population, size=size)
+                for row, size in found
+            ],
+        )
 
     def picture(self, generation: int, individual: int) -> bytes:
         """Return the net of an individual at equilibrium, as a frame of its net and its motion."""

@@ -32,6 +32,9 @@ export interface Protocol {
   opening: Opening;
   opened: Opened;
   refusal: Refusal;
+  lineage: Lineage;
+  brushes: Brushes;
+  clusters: Clusters;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -159,6 +162,10 @@ export interface Move {
 export interface Evolve {
   type: "evolve";
   id: number;
+  /**
+   * Breed from what is looked at instead.
+   */
+  looked: boolean;
   parameters: {
     [k: string]: unknown;
   };
@@ -543,7 +550,7 @@ export interface MotionHeader {
   arrays: ArrayHeader[];
 }
 /**
- * Springs and force differentials of all individuals from a generation on.
+ * Measures of all individuals from a generation on.
  */
 export interface TableHeader {
   frame: "table";
@@ -598,4 +605,57 @@ export interface Opened {
  */
 export interface Refusal {
   problem: string;
+}
+/**
+ * Where an individual came from, the last step last.
+ */
+export interface Lineage {
+  steps: LineageStep[];
+}
+/**
+ * An ancestor, or the individual itself: what its mutation changed.
+ */
+export interface LineageStep {
+  generation: number;
+  individual: number;
+  springs: number;
+  force_differential: number | null;
+  /**
+   * Such as ``12.0 subdivide 1 1 6 1``.
+   */
+  edits: string[];
+}
+/**
+ * Ask for clusters of what is brushed on axes.
+ */
+export interface Brushes {
+  /**
+   * Least and most by axis.
+   */
+  brushes: {
+    /**
+     * @minItems 2
+     * @maxItems 2
+     */
+    [k: string]: number[];
+  };
+  count: number;
+}
+/**
+ * Clusters of what is brushed, the largest first.
+ */
+export interface Clusters {
+  /**
+   * Individuals that are brushed.
+   */
+  brushed: number;
+  clusters: Cluster[];
+}
+/**
+ * A cluster of individuals, by the one nearest to its middle.
+ */
+export interface Cluster {
+  generation: number;
+  individual: number;
+  size: number;
 }
