@@ -3,6 +3,7 @@ import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
 import type { DocumentState, LiveState, Protocol, Reply, RunState } from "../protocol/messages";
+import type { Brushes } from "./choosing";
 import type { ColourChoice } from "./colouring";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
@@ -49,6 +50,8 @@ export interface State {
   /** Factor that the brush gives to cells; null takes factors away. */
   brush: number | null;
   individuals: Individuals;
+  /** Brushes on axes of the individuals. */
+  brushes: Brushes;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
   selection: Selection;
@@ -99,6 +102,7 @@ export const store = createStore<State>()(() => ({
   live: null,
   brush: GROW,
   individuals: NO_INDIVIDUALS,
+  brushes: {},
   gallery: false,
   selection: NOTHING,
   hover: null,
@@ -204,7 +208,7 @@ function takeRun(state: RunState): void {
   const other = before?.state.folder !== state.folder;
   store.setState({
     run: withMessage(before, state),
-    ...(other ? { individuals: NO_INDIVIDUALS } : {}),
+    ...(other ? { individuals: NO_INDIVIDUALS, brushes: {} } : {}),
   });
   if (tableTimer || state.generations === 0) return;
   tableTimer = window.setTimeout(async () => {
