@@ -84,7 +84,7 @@ test("evolution", async ({ page, open }) => {
   await page.locator(".gallery-cell").nth(2).click();
   await page.waitForTimeout(1500);
   await take(page, "gallery");
-  await page.getByLabel("Differential, at most").fill("14");
+  await page.getByLabel("Differential, at most").fill("20");
   await page.getByLabel("Differential, at most").blur();
   await page.getByRole("button", { name: "Group", exact: true }).click();
   await page.getByLabel("Differential, at least").scrollIntoViewIfNeeded();

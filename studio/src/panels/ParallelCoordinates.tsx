@@ -151,7 +151,7 @@ function Limits({ axis, range }: { axis: Axis; range: Range }) {
   };
   const field = (side: 0 | 1, word: string) => (
     <input
-      key={brush?.[side] ?? "none"}
+      key={`${word} ${brush?.[side] ?? ""}`}
       aria-label={`${axis.name}, ${word}`}
       defaultValue={brush && brush[side] !== range[side] ? inDigits(brush[side], 5) : ""}
       placeholder={inDigits(range[side], 4)}
