@@ -131,6 +131,9 @@ test("a tutor brushes, groups and takes a representative over", async ({ page, o
     expect(Number(springs)).toBeGreaterThanOrEqual(1000);
     expect(Number(differential)).toBeLessThanOrEqual(20);
   }
+  const row = page.locator(".gallery-row").first().locator("small b");
+  const shownOrder = (await row.allTextContents()).map(Number);
+  expect(shownOrder).toEqual([...shownOrder].sort((a, b) => a - b));
   await page.getByLabel("Groups", { exact: true }).fill("5");
   await page.getByLabel("Groups", { exact: true }).blur();
   await page.getByRole("button", { name: "Group", exact: true }).click();

@@ -164,6 +164,9 @@ function ordered(
     const found = (order === "springs" ? springs : differential)[first + number];
     return Number.isFinite(found) ? found : Number.POSITIVE_INFINITY;
   };
-  const values = numbers.map(value);
-  return numbers.sort((a, b) => (values[a] === values[b] ? a - b : values[a] < values[b] ? -1 : 1));
+  const values = new Map(numbers.map((number) => [number, value(number)]));
+  return numbers.sort((a, b) => {
+    const [first, second] = [values.get(a)!, values.get(b)!];
+    return first === second ? a - b : first < second ? -1 : 1;
+  });
 }

@@ -195,7 +195,10 @@ function drawAxes(
     context.lineTo(x(at), y(1));
     context.stroke();
     context.fillStyle = colour("--soft");
-    context.fillText(axis.name, x(at), at % 2 ? 9 : 19);
+    // The first name would be cut off by the edge.
+    context.textAlign = at ? "center" : "left";
+    context.fillText(axis.name, at ? x(at) : 2, at % 2 ? 9 : 19);
+    context.textAlign = "center";
     context.fillStyle = colour("--faint");
     context.fillText(inDigits(ranges[at][0], 4), x(at), HEIGHT - 5);
   });
