@@ -635,12 +635,13 @@ class Evolution:
         grafts: tuple[bool, float] = ...,
         symmetries: Symmetries | None = None,
         within: Selection | None = None,
+        cell_weights: list[tuple[str, float]] = ...,
         resumed: tuple[int, _Standing, float | None] | None = None,
     ) -> Evolution:
         """Start at a forest, or go on after a generation.
 
         `resumed` is (generation, standing of the run's start, the parent's spring utilization
-        factor). `min_length` is in m.
+        factor). `min_length` is in m. `cell_weights` are factors by address of cells.
         """
 
     def advance(self) -> _Generation:

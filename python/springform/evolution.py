@@ -23,12 +23,20 @@ from .patch_file import Patch, load_patch
 from .run import Run, Table, open_run, start_evolution
 from .run_writer import RunWriter, create, reopen
 from .selections import select
+from .steering import Asked, Driver, Requests, ask_driver, is_watched
 
 _FIRST_CHECKPOINT = 1.0
 """Seconds between checkpoints at first."""
 
 _CHECKPOINT_SHARE = 0.02
 """Share of the time so far between checkpoints later, so that long runs keep few files."""
+
+
+_POLL = 0.05
+"""Seconds between looks for requests while a run stands still [s]."""
+
+FIXED = frozenset({"population", "seed", "genes"})
+"""Parameters that a run keeps from its start to its end."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,8 @@ def evolve(
 ) -> Run:
     """Evolve a design and return the run; parameters are those of `Parameters`, by name.
 
-    `genes` may be patches or their files, `within` a selection as text. Types that genes define and
+    `genes` may be patches or their files; `within` and the keys of `cell_weights` selections as
+    text. Types that genes define and
     the design lacks are added to it.
     `out` is the run folder; without it the run lives in a temporary folder as long as the result.
     `threads` is the number of threads, by default one a core; it does not change the result.
@@ -76,7 +85,7 @@ def evolve(
     assert folder is not None
     with create(folder, design, checked, evolution.start) as writer:
         writer.log(f"started with {checked.model_dump_json()}")
-        _advance(evolution, checked, writer, on_generation)
+        _Drive(Path(folder), evolution, checked, writer, _threads(threads)).go(on_generation)
     run = _finished(folder)
     if keeper is not None:
         run._keeper = keeper  # type: ignore[attr-defined]  # the folder goes when the run does
@@ -108,8 +117,29 @@ def resume(
         (path / "best.toml").unlink(missing_ok=True)
         writer.log(f"resumed after generation {run.generations}")
         evolution = run.evolution(run.generations, threads=threads)
-        _advance(evolution, parameters, writer, on_generation)
+        _Drive(path, evolution, parameters, writer, threads).go(on_generation)
     return _finished(path)
+
+
+def steer(folder: str | os.PathLike[str], what: Asked, **parameters: Any) -> Driver:
+    """Ask whoever drives a run to pause, continue, stop or change parameters; return who that is.
+
+    The driver, a command line or a studio, obeys between two generations; a change is a line of
+    the run's journal. Raises `RunError`: nobody drives it. `InputError`: a parameter that is not
+    allowed.
+    """
+    path = Path(folder)
+    run = open_run(path)
+    if what != "change" and parameters:
+        raise InputError("only a change has parameters", key=min(parameters))
+    if what == "change":
+        if not parameters:
+            raise InputError("name parameters to change, such as insertions=5%")
+        if fixed := FIXED & set(parameters):
+            raise InputError("stays as it was at the start of the run", key=min(fixed))
+        _, parameters = _prepared(run.design, parameters)
+        checked_parameters(run.parameters.model_dump() | parameters, run.design.file.method)
+    return ask_driver(path, what, parameters)
 
 
 @dataclass(frozen=True)
@@ -175,6 +205,12 @@ def _prepared(design: Design, parameters: dict[str, Any]) -> tuple[Design, dict[
             design = design.with_cell_types(gene.cell_types)
     if isinstance(parameters.get("within"), (str, _core.Selection)):
         parameters["within"] = select(design, parameters["within"]).addresses
+    if parameters.get("cell_weights"):
+        parameters["cell_weights"] = {
+            address: factor
+            for cells, factor in parameters["cell_weights"].items()
+            for address in select(design, cells).addresses
+        }
     return design, parameters
 
 
@@ -200,41 +236,105 @@ def _threads(threads: int | None) -> int:
     return threads
 
 
-def _advance(
-    evolution: _core.Evolution,
-    parameters: Parameters,
-    writer: RunWriter,
-    on_generation: OnGeneration | None,
-) -> None:
-    began = written = time.monotonic()
-    reason = evolution.reached(*parameters.ending())
-    with _interrupts_noted() as interrupted:
-        while reason is None:
-            result = evolution.advance()
-            parent = evolution.measures
-            generation = evolution.generation
-            writer.add(generation, result, parent)
-            now = time.monotonic()
-            if now - written > max(_FIRST_CHECKPOINT, _CHECKPOINT_SHARE * (now - began)):
-                writer.checkpoint()
-                written = now
-            if on_generation is not None:
-                on_generation(
-                    Progress(
-                        generation,
-                        parent["springs"],
-                        parent["force_differential"],
-                        result["suf"],
-                        result["columns"],
-                    )
+class _Drive:
+    """A run that this process drives to its end, obeying what others ask between generations."""
+
+    def __init__(
+        self,
+        folder: Path,
+        evolution: _core.Evolution,
+        parameters: Parameters,
+        writer: RunWriter,
+        threads: int,
+    ) -> None:
+        self._folder = folder
+        self._evolution = evolution
+        self._parameters = parameters
+        self._writer = writer
+        self._threads = threads
+        self._requests = Requests(folder)
+        self._stands = self._stopped = False
+
+    def go(self, on_generation: OnGeneration | None) -> None:
+        """Make generations until the run ends. Raises `KeyboardInterrupt`: it was interrupted."""
+        began = written = time.monotonic()
+        with _interrupts_noted() as interrupted:
+            while (reason := self._reason()) is None:
+                if not self._stands:
+                    self._make_one(on_generation)
+                now = time.monotonic()
+                if not self._stands and self._is_due(now - written, now - began):
+                    self._writer.checkpoint()
+                    written = now
+                self._obey()
+                if interrupted:
+                    self._writer.checkpoint()
+                    generation = self._evolution.generation
+                    self._writer.log(f"interrupted after generation {generation}")
+                    raise KeyboardInterrupt
+            self._writer.checkpoint()
+            generation = self._evolution.generation
+            self._writer.log(f"ended by {reason} after generation {generation}")
+
+    def _reason(self) -> str | None:
+        if self._stopped:
+            return "request"
+        return self._evolution.reached(*self._parameters.ending())
+
+    def _make_one(self, on_generation: OnGeneration | None) -> None:
+        result = self._evolution.advance()
+        parent = self._evolution.measures
+        generation = self._evolution.generation
+        self._writer.add(generation, result, parent)
+        if on_generation is not None:
+            on_generation(
+                Progress(
+                    generation,
+                    parent["springs"],
+                    parent["force_differential"],
+                    result["suf"],
+                    result["columns"],
                 )
-            reason = evolution.reached(*parameters.ending())
-            if interrupted:
-                writer.checkpoint()
-                writer.log(f"interrupted after generation {generation}")
-                raise KeyboardInterrupt
+            )
+
+    def _is_due(self, since: float, so_far: float) -> bool:
+        if since <= _FIRST_CHECKPOINT:
+            return False
+        return since > _CHECKPOINT_SHARE * so_far or is_watched(self._folder)
+
+    def _obey(self) -> None:
+        """Do what was asked; while the run stands still, wait a moment."""
+        if self._stands:
+            time.sleep(_POLL)
+        for request in self._requests.new():
+            if request.what == "pause" and not self._stands:
+                self._stands = True
+                self._writer.stand()
+            elif request.what == "continue":
+                self._stands = False
+                self._writer.checkpoint()
+            elif request.what == "stop":
+                self._stopped = True
+            elif request.what == "change":
+                self._change(request.parameters)
+            self._writer.log(f"was asked to {request.what}")
+
+    def _change(self, values: dict[str, Any]) -> None:
+        """Journal changed parameters and go on as a run does that is resumed."""
+        writer, generation = self._writer, self._evolution.generation
+        try:
+            method = open_run(self._folder).design.file.method
+            changed = checked_parameters(self._parameters.model_dump() | values, method)
+        except InputError as error:
+            writer.log(f"refused a change: {error}")
+            return
         writer.checkpoint()
-        writer.log(f"ended by {reason} after generation {evolution.generation}")
+        writer.change(generation, values)
+        self._parameters = changed
+        run = open_run(self._folder)
+        self._evolution = run.evolution(generation, threads=self._threads)
+        if self._stands:
+            writer.stand()
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from pydantic import (
     ConfigDict,
     Field,
     ValidationError,
+    create_model,
 )
 
 from .errors import InputError
@@ -103,6 +104,11 @@ class Parameters(BaseModel):
     """Mutate by orbits, so that every individual keeps the symmetries of the framework."""
     within: Annotated[tuple[str, ...], Field(min_length=1, strict=False)] | None = None
     """Addresses of the cells within which mutation stays."""
+    cell_weights: dict[str, Annotated[float, Field(ge=0, le=1e6)]] = {}
+    """Factors, by address, on the chance that a cell or one that descends from it is drawn.
+
+    The nearest one counts; 0: never drawn, nor changed by a step on the cells above it.
+    """
     until_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
     """End once the parent has this many springs."""
     until_differential: Annotated[float, Field(gt=0)] | None = None
@@ -142,6 +148,27 @@ def checked_parameters(values: Mapping[str, Any], method: str = "dynamic") -> Pa
         raise InputError(f"unknown parameter; {nearest(key, Parameters.model_fields)}", key=key)
     problem = fault["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     raise InputError(f"{problem}, not {fault['input']!r}", key=key)
+
+
+def read_parameter(name: str, text: str) -> Any:
+    """Return the value of a parameter from text; ``none`` takes a limit away.
+
+    Raises `InputError`: there is no such parameter, or this is no value of it.
+    """
+    if name not in Parameters.model_fields:
+        raise InputError(f"unknown parameter; {nearest(name, Parameters.model_fields)}", key=name)
+    field = Parameters.model_fields[name]
+    if text == "none" and field.default is None:
+        return None
+    if name == "types":
+        return _listed(text)
+    make: Any = create_model
+    try:
+        one = make("One", value=(field.annotation, field))
+        return one.model_validate_strings({"value": text}).value
+    except ValidationError as error:
+        problem = error.errors(include_url=False)[-1]["msg"].removeprefix("Value error, ")
+        raise InputError(f"{problem}, not {text!r}", key=name) from None
 
 
 def _in_order(parameters: Parameters) -> Parameters:

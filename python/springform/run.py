@@ -291,6 +291,7 @@ def start_evolution(
             grafts=parse_amount(parameters.grafts),
             symmetries=_core.Symmetries(design.setting) if parameters.symmetry else None,
             within=None if within is None else _core.Selection(design.mesh, list(within)),
+            cell_weights=list(parameters.cell_weights.items()),
             resumed=resumed,
         )
     except _core.CoreError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import platform
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -35,14 +36,18 @@ from .run_format import (
     parts_of,
     read_settings,
 )
+from .steering import Lease, Program, check_free, driver_of
+
+_ATTEMPTS = 4
 
 
 class RunWriter:
     """Writes a run folder while a run goes on; made by `create` or `reopen`, under a lock."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, lease: Lease) -> None:
         """Write into a run folder that exists and is locked."""
         self._folder = folder
+        self._lease = lease
         self._waiting: list[tuple[Mapping[str, NDArray[Any]], GenerationLine]] = []
 
     def add(self, generation: int, result: Mapping[str, Any], parent: Mapping[str, Any]) -> None:
@@ -65,6 +70,7 @@ class RunWriter:
 
     def checkpoint(self) -> None:
         """Write what was added. Raises `WriteError`: nothing of it counts as written then."""
+        self._lease.renew(standing=False)
         if not self._waiting:
             return
         columns, lines = zip(*self._waiting, strict=True)
@@ -80,6 +86,11 @@ class RunWriter:
         write_atomically(self._folder / "measures" / name, sink.getvalue().to_pybytes())
         self._append_text("journal.jsonl", journal_text(lines))
         self._waiting = []
+
+    def stand(self) -> None:
+        """Write what was added, and say that the run stands still."""
+        self.checkpoint()
+        self._lease.renew(standing=True)
 
     def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
         """Journal a change of parameters that holds from a generation on."""
@@ -114,6 +125,7 @@ def create(
     design: Design,
     parameters: Parameters,
     start: tuple[int, float | None],
+    program: Program = "command line",
 ) -> Iterator[RunWriter]:
     """Make a run folder and hold its lock.
 
@@ -129,7 +141,7 @@ def create(
         raise WriteError(f"can't be made: {explain(error)}", file=path) from None
     if in_use:
         raise RunError("is not empty; choose another folder", file=path)
-    with _locked(path):
+    with _locked(path, program) as lease:
         _refuse_run(path)
         remove_temporary(path)
         if parts_of(path) or (path / "journal.jsonl").exists():
@@ -156,18 +168,18 @@ def create(
         # Last, because a folder with this file counts as a run.
         text = settings.model_dump_json(indent=2) + "\n"
         write_atomically(path / "run.json", text.encode())
-        yield RunWriter(path)
+        yield RunWriter(path, lease)
 
 
 @contextmanager
-def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
+def reopen(folder: Path, program: Program = "command line") -> Iterator[tuple[Run, RunWriter]]:
     """Hold the lock of a run folder, dropping what lies behind its last complete checkpoint.
 
     Raises `RunError`: no run, a broken one, or one that another process drives. `WriteError`: it
     can't be written.
     """
     read_settings(folder)
-    with _locked(folder):
+    with _locked(folder, program) as lease:
         # Read under the lock: until now another process may have gone on with it.
         run = Run(folder)
         _check(run)
@@ -177,7 +189,7 @@ def reopen(folder: Path) -> Iterator[tuple[Run, RunWriter]]:
         for _, last, path in parts_of(folder):
             if last > run.generations:
                 path.unlink(missing_ok=True)
-        yield run, RunWriter(folder)
+        yield run, RunWriter(folder, lease)
 
 
 def _check(run: Run) -> None:
@@ -191,17 +203,31 @@ def _refuse_run(folder: Path) -> None:
 
 
 @contextmanager
-def _locked(folder: Path) -> Iterator[None]:
+def _locked(folder: Path, program: Program) -> Iterator[Lease]:
     path = folder / "lock"
     try:
         lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
         raise WriteError(f"can't be written: {explain(error)}", file=path) from None
     try:
+        for attempt in range(_ATTEMPTS):
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                # Whoever asks who drives holds the lock for a moment.
+                if attempt + 1 < _ATTEMPTS:
+                    time.sleep(0.05)
+        else:
+            driver = driver_of(folder)
+            who = "" if driver is None else f": {driver}"
+            problem = f"another process drives this run{who}; wait for it"
+            raise RunError(problem, file=folder) from None
+        check_free(lock, folder)
+        lease = Lease(lock, program)
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise RunError("another process drives this run; wait for it", file=folder) from None
-        yield
+            yield lease
+        finally:
+            lease.end()
     finally:
         os.close(lock)

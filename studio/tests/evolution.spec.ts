@@ -11,7 +11,7 @@ async function fill(page: Page, label: string, value: string): Promise<void> {
 async function generations(page: Page): Promise<number> {
   return Number(
     (await page
-      .locator(".fact", { hasText: "Generations" })
+      .locator(".fact", { hasText: /^Generations\d/ })
       .locator(".fact-value")
       .textContent())!.replace(",", ""),
   );

@@ -84,6 +84,15 @@ test("evolution", async ({ page, open }) => {
   await page.locator(".gallery-cell").nth(2).click();
   await page.waitForTimeout(1500);
   await take(page, "gallery");
+  await page.getByLabel("Differential, at most").fill("20");
+  await page.getByLabel("Differential, at most").blur();
+  await page.getByRole("button", { name: "Group", exact: true }).click();
+  await page.getByLabel("Differential, at least").scrollIntoViewIfNeeded();
+  await page.waitForTimeout(1500);
+  await take(page, "choosing");
+  await page.getByRole("heading", { name: "Clusters" }).scrollIntoViewIfNeeded();
+  await page.locator(".lineage li button").nth(3).click();
+  await take(page, "lineage");
 });
 
 test("framework", async ({ page, open }) => {
@@ -165,4 +174,17 @@ test("sections", async ({ page, open }) => {
   await page.keyboard.press("d");
   await page.getByRole("button", { name: /^Document/ }).click();
   await take(page, "document");
+});
+
+test("live", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Keep out", exact: true }).click();
+  await clickCellAbove(page, await anchorPlace(page, "A4"));
+  await page.getByRole("button", { name: "Grow here" }).click();
+  await clickCellAbove(page, await anchorPlace(page, "A9"));
+  await take(page, "live-start");
+  await page.getByRole("button", { name: "Evolve live" }).click();
+  await page.waitForTimeout(4000);
+  await take(page, "live");
 });

@@ -343,7 +343,9 @@ impl Parent {
         let inner_forces = if weighs(Weighting::Stress) { phenotype.inner_forces() } else { Vec::new() };
         let mut candidates = Candidates::new(&forest, &inner_forces);
         let instances = Instances::new(&setting.mesh, &setting.catalogue, &forest)?;
-        candidates.restrict(|place| parameters.variation.may_draw(place) && instances.represents(place.face));
+        candidates.favour(|place| {
+            if instances.represents(place.face) { parameters.variation.factor(place) } else { 0.0 }
+        });
         for (weighting, _) in WEIGHTINGS.into_iter().filter(|&(weighting, _)| weighs(weighting)) {
             candidates.weigh(weighting, &parameters.weights);
         }

@@ -7,6 +7,7 @@
 //! All randomness of springFORM lives here; every draw comes from (seed, generation, individual), so results do
 //! not depend on the number of threads, nor on interruptions. There is no clock here and no input or output.
 
+pub mod cell_weights;
 pub mod census;
 pub mod draws;
 pub mod ending;

@@ -82,8 +82,8 @@ struct Candidate {
     on: bool,
     /// Inner force of the cell, or of its subtree [N].
     force: f64,
-    /// It may be drawn.
-    drawable: bool,
+    /// Factor on its weight; 0: it may not be drawn.
+    factor: f64,
     /// Among owners, the one right above; `NONE` for a top-level cell.
     above: usize,
 }
@@ -135,7 +135,7 @@ impl Candidates {
                 content: forest.content(cell),
                 on: forest.is_on(cell),
                 force: 0.0,
-                drawable: true,
+                factor: 1.0,
                 above: above.last().copied().unwrap_or(NONE),
             };
             let stored = forest.children(cell).is_some();
@@ -174,8 +174,7 @@ impl Candidates {
     fn sums(&self, step: usize, weighting: Weighting, parameters: &WeightingParameters) -> SumTree {
         let weight = |candidate: &Candidate| {
             let level = candidate.place.level;
-            let drawn = candidate.drawable;
-            if drawn { weight(weighting, parameters, level, self.deepest, candidate.force) } else { 0.0 }
+            candidate.factor * weight(weighting, parameters, level, self.deepest, candidate.force)
         };
         match step {
             INSERT => SumTree::new(self.divisible.iter().map(|&at| weight(&self.expressed[at]))),
@@ -184,13 +183,15 @@ impl Candidates {
         }
     }
 
-    /// Lets only some cells be drawn, and counts only them; comes before [`Candidates::weigh`].
-    pub fn restrict(&mut self, may_draw: impl Fn(Place) -> bool) {
+    /// Multiplies weights by a factor a cell; cells of factor 0 are never drawn nor counted.
+    ///
+    /// Comes before [`Candidates::weigh`].
+    pub fn favour(&mut self, factor: impl Fn(Place) -> f64) {
         for list in [&mut self.expressed, &mut self.owners] {
-            list.iter_mut().for_each(|candidate| candidate.drawable = may_draw(candidate.place));
+            list.iter_mut().for_each(|candidate| candidate.factor = factor(candidate.place));
         }
-        self.divisible.retain(|&at| self.expressed[at].drawable);
-        let drawable = |list: &[Candidate]| list.iter().filter(|candidate| candidate.drawable).count();
+        self.divisible.retain(|&at| self.expressed[at].factor > 0.0);
+        let drawable = |list: &[Candidate]| list.iter().filter(|candidate| candidate.factor > 0.0).count();
         (self.switchable, self.togglable) = (drawable(&self.expressed), drawable(&self.owners));
     }
 }

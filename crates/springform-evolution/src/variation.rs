@@ -3,6 +3,7 @@
 //! The fourth mutation inserts a patch ("a subtree set of the CIN operating as a single gene", the paper §5) at a
 //! random seed and orientation. Under symmetries mutation draws one cell of every orbit and the others follow.
 
+use crate::cell_weights::CellWeights;
 use crate::draws::Draws;
 use crate::mutation::Amount;
 use crate::phenotype::Setting;
@@ -28,22 +29,26 @@ pub struct Variation {
     pub orbits: Option<Orbits>,
     /// The region outside of which mutation changes nothing; closing may.
     pub within: Option<Selection>,
+    /// Factors on the chance that a cell is drawn. Under symmetries those of the cells that stand for their orbits count.
+    pub cell_weights: CellWeights,
 }
 
 impl Default for Variation {
     fn default() -> Self {
-        Variation { genes: Vec::new(), grafts: Amount::Count(1.0), orbits: None, within: None }
+        Variation { genes: Vec::new(), grafts: Amount::Count(1.0), orbits: None, within: None, cell_weights: CellWeights::default() }
     }
 }
 
 impl Variation {
-    /// Mutation may draw the cell: it is in the region and stands for its orbit.
-    pub fn may_draw(&self, place: Place) -> bool {
-        self.may_change(place) && self.orbits.as_ref().is_none_or(|orbits| orbits.represents(place))
+    /// Factor on the weight of a cell; 0 if it is outside the region or does not stand for its orbit.
+    pub fn factor(&self, place: Place) -> f64 {
+        let stands = self.orbits.as_ref().is_none_or(|orbits| orbits.represents(place));
+        if stands { self.factor_in_region(place) } else { 0.0 }
     }
 
-    fn may_change(&self, place: Place) -> bool {
-        self.within.as_ref().is_none_or(|within| within.contains(place))
+    fn factor_in_region(&self, place: Place) -> f64 {
+        let inside = self.within.as_ref().is_none_or(|within| within.contains(place));
+        if inside { self.cell_weights.of(place) } else { 0.0 }
     }
 
     /// Completes a mutant to which `edits` were applied: carries them through their orbits, inserts genes and
@@ -77,7 +82,7 @@ impl Variation {
         for _ in 0..draws.below(most + 1) {
             let gene = &self.genes[draws.below(self.genes.len() as u32) as usize];
             let Some(frame) = draw_frame(setting, gene, &mirrors, draws) else { continue };
-            let may_write = |place| self.may_change(place);
+            let may_write = |place| self.factor_in_region(place) > 0.0;
             let placed = graft(&setting.mesh, forest, (gene, frame), &mirrors, &mut taken, may_write, edits)?;
             grafted.extend(placed.faces);
         }

@@ -5,11 +5,13 @@ mod runs;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use runs::common::cases;
+use springform_evolution::cell_weights::CellWeights;
 use springform_evolution::draws::Draws;
 use springform_evolution::mutation::{Amount, Candidates, Palette, Strategy, mutate};
 use springform_evolution::selection::{
     WEIGHTINGS, Weighting, WeightingParameters, draw_without_replacement, weight,
 };
+use springform_topology::address::Place;
 use springform_topology::cell_type::{Catalogue, QUAD};
 use springform_topology::edit::Edit;
 use springform_topology::forest::{Content, Forest};
@@ -174,6 +176,39 @@ fn exponential_weighting_subdivides_top_level_cells_alike() {
     }
     // 7 degrees of freedom.
     assert!(chi_square(&counts, &[1.0 / 8.0; 8]) < 24.3, "{counts:?}");
+}
+
+#[test]
+fn favoured_cells_are_drawn_in_proportion() {
+    let forest = Forest::new(4, Content::QUAD);
+    let cell = |face| Place::top(face);
+    let weights = CellWeights::new([(cell(1), 3.0), (cell(2), 0.0), (cell(3), 0.5)]);
+    let mut candidates = Candidates::new(&forest, &[]);
+    candidates.favour(|place| weights.of(place));
+    let (catalogue, nothing) = (Catalogue::default(), Amount::Count(0.0));
+    let palette = Palette { types: &[QUAD], catalogue: &catalogue, weights: &PLAIN };
+    let insertions = Amount::Share(0.3);
+    let strategy =
+        Strategy { insertions, switches: nothing, toggles: nothing, weighting: Weighting::Unweighted };
+    let mut counts = [0; 4];
+    for individual in 0..45_000 {
+        let edits = mutate(&candidates, &strategy, &palette, &mut Draws::new(5, 1, individual));
+        let &[Edit::Subdivide { cell, .. }] = edits.as_slice() else { panic!("a third of three cells: {edits:?}") };
+        counts[cell.face as usize] += 1;
+    }
+    assert_eq!(counts[2], 0);
+    // 2 degrees of freedom: above 13.8 in one of a thousand.
+    let drawn = [counts[0], counts[1], counts[3]];
+    assert!(chi_square(&drawn, &[1.0 / 4.5, 3.0 / 4.5, 0.5 / 4.5]) < 13.8, "{counts:?}");
+}
+
+#[test]
+fn factors_go_on_to_descendants() {
+    let cell = |address: &str| Place::parse(address).expect("an address");
+    let weights = CellWeights::new([(cell("4"), 2.0), (cell("4.1"), 5.0), (cell("4.2.3"), 0.0)]);
+    let factors = ["4.0", "4.0.3", "4.1", "4.1.2.2", "4.2.1", "7", "4", "4.2", "4.2.3", "4.2.3.0"];
+    let expected = [2.0, 2.0, 5.0, 5.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(factors.map(|address| weights.of(cell(address))), expected);
 }
 
 #[test]

@@ -5,7 +5,8 @@ mod runs;
 use proptest::prelude::*;
 use runs::common::{Dice, cases, dice};
 use runs::{Start, starts};
-use springform_evolution::evolve::{Evolution, Parameters};
+use springform_evolution::cell_weights::CellWeights;
+use springform_evolution::evolve::{Evolution, Individual, Parameters};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::variation::Variation;
 use springform_topology::address::Place;
@@ -70,7 +71,7 @@ proptest! {
         let orbits = Orbits::new(&group, faces, &setting.catalogue, &types).expect("built-in types have images");
         let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
         let variation =
-            Variation { genes, grafts: Amount::Count(2.0), orbits: Some(orbits.clone()), within: None };
+            Variation { genes, grafts: Amount::Count(2.0), orbits: Some(orbits.clone()), ..Variation::default() };
         let mesh = setting.mesh.clone();
         let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
         for (_, forest) in replayed(&mut evolution, 3) {
@@ -85,7 +86,8 @@ proptest! {
         let level = dice.below(2) as u8;
         let round = Selection::rings(&start.setting.mesh, &[NodeKey::vertex(vertex)], 1, level);
         let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
-        let variation = Variation { genes, grafts: Amount::Share(0.2), orbits: None, within: Some(round.clone()) };
+        let within = Some(round.clone());
+        let variation = Variation { genes, grafts: Amount::Share(0.2), within, ..Variation::default() };
         let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
         for (parent, forest) in replayed(&mut evolution, 2) {
             for face in 0..forest.top_level() {
@@ -95,6 +97,38 @@ proptest! {
                 prop_assert!(same || !round.contains(Place::top(face)) || selected);
             }
         }
+    }
+
+    /// Cells of factor 0 stay as they are, however deep they lie, under steps on the cells above and under genes.
+    #[test]
+    fn what_is_kept_out_of_stays(start in starts(12), mut dice in dice(60)) {
+        let mut places = Vec::new();
+        start.forest.visit_reachable(|_, place| places.push(place));
+        let place = dice.pick(&places);
+        let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
+        let cell_weights = CellWeights::new([(Place::top(place.face), 3.0), (place, 0.0)]);
+        let variation = Variation { genes, cell_weights, ..Variation::default() };
+        let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
+        for (parent, forest) in replayed(&mut evolution, 2) {
+            let tree = |forest: &Forest| forest.find(place).map(|cell| Tree::of(forest, cell));
+            prop_assert!(tree(&parent) == tree(&forest) || start.setting.method == Method::Recursive);
+        }
+    }
+
+    /// Factors of 1 change no bit.
+    #[test]
+    fn factors_of_one_change_nothing(start in starts(12), dice in dice(60)) {
+        let ones = CellWeights::new((0..start.forest.top_level()).map(|face| (Place::top(face), 1.0)));
+        let run = |cell_weights| {
+            let variation = Variation { cell_weights, ..Variation::default() };
+            let mut evolution = begin(&start, &mut dice.clone(), variation)?;
+            Some(evolution.advance().expect("the winner was evaluated").individuals)
+        };
+        let (plain, weighted) = (run(CellWeights::default()), run(ones));
+        let edits = |individuals: Option<Vec<Individual>>| {
+            individuals.map(|all| all.into_iter().map(|one| one.edits).collect::<Vec<_>>())
+        };
+        prop_assert_eq!(edits(plain), edits(weighted));
     }
 
     /// Without other mutations a mutant is its parent with the gene in some places, whole cell by whole cell.

@@ -8,6 +8,7 @@ use crate::topology::Forest;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use springform_evolution::cell_weights::CellWeights;
 use springform_evolution::ending::Ending;
 use springform_evolution::evolve::{self, Generation, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, Standing, SufReference};
@@ -18,6 +19,7 @@ use springform_evolution::variation::Variation;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::measures::Measures;
 use springform_mechanics::stage::STAGES;
+use springform_topology::address::Place;
 use springform_topology::patch::Patch;
 use std::time::Instant;
 
@@ -60,6 +62,19 @@ fn weighting(name: &str) -> PyResult<Weighting> {
     Weighting::parse(name).ok_or_else(|| refusal("weighting", format!("unknown weighting '{name}'")))
 }
 
+fn cell_weights(setting: &Setting, factors: Vec<(String, f64)>) -> PyResult<CellWeights> {
+    let faces = setting.setting.mesh.faces().len();
+    let parse = |(address, factor): (String, f64)| {
+        let key = || format!("cell_weights.{address}");
+        let place = Place::parse(&address).map_err(|error| refusal(key(), error))?;
+        if place.face as usize >= faces {
+            return Err(refusal(key(), format!("there is no such cell; there are {faces}, from 0")));
+        }
+        Ok((place, factor))
+    };
+    Ok(CellWeights::new(factors.into_iter().map(parse).collect::<PyResult<Vec<_>>>()?))
+}
+
 #[pyclass(module = "springform._core")]
 pub struct Evolution {
     evolution: evolve::Evolution,
@@ -71,7 +86,7 @@ impl Evolution {
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (setting, forest, *, population, seed, types, strategy, base, exponent, self_adapt,
         fitness, suf_reference, niche, min_length, min_springs, max_springs, selection, threads, genes=vec![],
-        grafts=(false, 1.0), symmetries=None, within=None, resumed=None))]
+        grafts=(false, 1.0), symmetries=None, within=None, cell_weights=vec![], resumed=None))]
     fn new(
         py: Python<'_>,
         setting: &Setting,
@@ -95,6 +110,7 @@ impl Evolution {
         grafts: (bool, f64),
         symmetries: Option<&Symmetries>,
         within: Option<&Region>,
+        cell_weights: Vec<(String, f64)>,
         resumed: Option<Resumed>,
     ) -> PyResult<Self> {
         let unknown = |key: &str, word: &str| refusal(key, format!("unknown {key} '{word}'"));
@@ -109,6 +125,7 @@ impl Evolution {
         let drawn: Vec<_> = types.iter().copied().chain(genes.iter().flat_map(Patch::types)).collect();
         let orbits = symmetries.map(|group| group.orbits(setting, &drawn, forest)).transpose()?;
         let within = within.map(|within| within.selection.clone());
+        let cell_weights = self::cell_weights(setting, cell_weights)?;
         let fitness = match fitness {
             "suf" => Fitness::Suf,
             "differential" => Fitness::Differential,
@@ -133,7 +150,7 @@ impl Evolution {
             self_adapt,
             criterion: Criterion { fitness, reference, niche, min_length, min_springs, max_springs },
             selection,
-            variation: Variation { genes, grafts: amount(grafts), orbits, within },
+            variation: Variation { genes, grafts: amount(grafts), orbits, within, cell_weights },
         };
         let strategy = self::strategy(strategy)?;
         let resumed = resumed.map(|(generation, (springs, differential), suf)| {

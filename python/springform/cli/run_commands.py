@@ -6,18 +6,19 @@ import shlex
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ..design import save
 from ..errors import InputError
-from ..evolution import OnGeneration, evolve, resume
+from ..evolution import OnGeneration, evolve, resume, steer
 from ..evolution import Progress as GenerationProgress
 from ..files import WriteError
-from ..parameters import Parameters
+from ..parameters import Parameters, read_parameter
 from ..run import Run, open_run
 from ..run_format import is_run
+from ..steering import ASKED
 from .terminal import (
     DesignArgument,
     Json,
@@ -99,6 +100,14 @@ def evolve_command(
     within: Annotated[
         str | None, typer.Option(help='Cells within which mutation stays, as "rings(A7, 2)".')
     ] = None,
+    cell_weights: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--cell-weight",
+            help='Factor on the chance that cells are drawn, as "rings(A7, 2)=4"; 0: kept as they '
+            "are. May be given again.",
+        ),
+    ] = None,
     until_springs: Annotated[
         int | None, typer.Option(help="End once the parent has this many springs.")
     ] = None,
@@ -132,6 +141,7 @@ def evolve_command(
         "grafts": grafts,
         "symmetry": symmetry,
         "within": within,
+        "cell_weights": cell_weights_of(cell_weights or []) or None,
         "until_springs": until_springs,
         "until_differential": until_differential,
         "until_suf": until_suf,
@@ -165,6 +175,40 @@ def resume_command(
 
 
 @commands.command(
+    "steer", epilog="Example: `springform steer runs/a change insertions=5% weighting=deep`"
+)
+def steer_command(
+    run: RunArgument,
+    what: Annotated[
+        str, typer.Argument(metavar="WHAT", help="pause, continue, stop, or change parameters.")
+    ],
+    changes: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME=VALUE]...", help="Parameters to change, as those of evolve."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Ask whoever drives a run for something; done between two generations."""
+    asked = next((word for word in ASKED if word == what), None)
+    if asked is None:
+        raise InputError(f"must be one of {', '.join(ASKED)}, not {what!r}", key="WHAT")
+    driver = steer(run, asked, **parameters_of(changes or []))
+    print_report({"asked": asked, "driver": driver.program, "process": driver.pid}, as_json)
+
+
+def parameters_of(texts: list[str]) -> dict[str, Any]:
+    """Return parameters from ``name=value``. Raises `InputError`: no such, or no such value."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"must be a name and a value, such as insertions=5%, not {text!r}")
+        name = name.strip().replace("-", "_")
+        found[name] = read_parameter(name, value.strip())
+    return found
+
+
+@commands.command(
     epilog="Example: `springform show runs/a --generation 12 --individual 37 --out a.toml`"
 )
 def show(
@@ -183,6 +227,21 @@ def show(
     report = {name: table[name][row].item() for name in ("springs", "force_differential", "suf")}
     save(design, out)
     print_report(report, as_json)
+
+
+def cell_weights_of(texts: list[str]) -> dict[str, float]:
+    """Return factors by selection. Raises `InputError`: not ``SELECTION=FACTOR``."""
+    factors: dict[str, float] = {}
+    for text in texts:
+        cells, _, factor = text.rpartition("=")
+        try:
+            factors[cells.strip()] = float(factor)
+        except ValueError:
+            cells = ""
+        if not cells.strip():
+            problem = f"must be cells and a factor, such as 12.0=4, not {text!r}"
+            raise InputError(problem, key="--cell-weight")
+    return factors
 
 
 def gene_files(paths: list[Path]) -> list[Path]:

@@ -16,20 +16,23 @@ from numpy.typing import NDArray
 from .. import _core
 from ..design import Design, save
 from ..errors import InputError, SpringformError
+from ..evolution import FIXED, steer
 from ..parameters import Parameters, checked_parameters
 from ..run import STRATEGY, Run, open_run, start_evolution
 from ..run_writer import RunWriter, create, reopen
-from .messages import GenerationRow
+from ..steering import Driver, Requests, driver_of, watch
+from .choosing import AXES
+from .messages import GenerationRow, LineageStep
 
 Status = Literal["running", "paused", "ended", "failed"]
-
-FIXED = frozenset({"population", "seed"})
-"""Parameters that a run keeps from its start to its end."""
 
 _CHECKPOINT = 1.0
 """Seconds between checkpoints [s]."""
 
 _KEPT_ALGORITHMS = 4
+
+_POLL = 0.25
+"""Seconds between looks at requests, and at a run that another process drives [s]."""
 
 _ENDINGS = {
     "generations": "the number of generations is reached",
@@ -43,7 +46,7 @@ class Evolving:
     """One run, in a thread of its own; safe to call from any thread.
 
     Attributes: `folder`, `status`, `reason` (why it ended, failed or stands still), `parameters`,
-    `rows` (what every generation gave).
+    `rows` (what every generation gave), `driver` (another process that drives it).
     """
 
     def __init__(self, folder: Path, tell: Callable[[], None]) -> None:
@@ -53,10 +56,13 @@ class Evolving:
         self.reason = ""
         self.parameters = Parameters()
         self.rows: list[GenerationRow] = []
+        self.driver: Driver | None = None
         self._tell = tell
+        self._watching = threading.Event()
         self._changed = threading.Condition()
         self._wanted: dict[str, Any] = {}
         self._parents: list[Design] = []
+        self._edits: list[list[str]] = []
         self._columns: list[Mapping[str, NDArray[Any]]] = []
         self._resumed: list[dict[str, Any]] = []
         self._algorithms: dict[int, _core.Evolution] = {}
@@ -76,12 +82,26 @@ class Evolving:
 
     def open(self) -> None:
         """Read a run that is in the folder, to look at and to go on with."""
-        run = open_run(self.folder)
-        self._read(run)
+        self._read(open_run(self.folder))
         self.status, self.reason = "paused", ""
+        self.watch()
+
+    def watch(self) -> None:
+        """Follow the run for as long as another process drives it."""
+        if self._thread is not None and self._thread.is_alive():
+            return
+        self.driver = driver_of(self.folder)
+        if self.driver is not None:
+            self.status = "paused" if self.driver.standing else "running"
+            self._watching.clear()
+            self._thread = threading.Thread(target=self._follow, name="watching", daemon=True)
+            self._thread.start()
 
     def go_on(self) -> None:
-        """Continue a run that is paused. Raises `InputError`: another process drives it."""
+        """Continue a run that is paused. Raises `InputError`: another process began to drive it."""
+        if self.driver is not None:
+            steer(self.folder, "continue")
+            return
         with self._changed:
             if self._thread is not None and self._thread.is_alive():
                 self.status, self.reason = "running", ""
@@ -92,6 +112,9 @@ class Evolving:
 
     def pause(self) -> None:
         """Stop after the generation that is being made; its thread keeps the folder's lock."""
+        if self.driver is not None:
+            steer(self.folder, "pause")
+            return
         with self._changed:
             if self.status == "running":
                 self.status = "paused"
@@ -99,6 +122,9 @@ class Evolving:
 
     def change(self, values: Mapping[str, Any]) -> None:
         """Change parameters from the next generation on. Raises `InputError`: what is refused."""
+        if self.driver is not None:
+            steer(self.folder, "change", **values)
+            return
         if fixed := FIXED & set(values):
             raise InputError("stays as it was at the start of the run", key=min(fixed))
         with self._changed:
@@ -111,13 +137,27 @@ class Evolving:
         self._tell()
 
     def stop(self) -> None:
-        """End the thread after the generation that is being made; what was made is kept."""
+        """End the thread after the generation that is being made; what was made is kept.
+
+        What another process drives is left to it; `end_driver` asks it to end.
+        """
+        self._watching.set()
+        if self.driver is not None and self._thread is not None:
+            self._thread.join()
+            return
         with self._changed:
             if self.status in ("running", "paused"):
                 self.status, self.reason = "ended", "it was stopped"
             self._changed.notify()
         if self._thread is not None:
             self._thread.join()
+
+    def end_driver(self) -> bool:
+        """Ask another process that drives the run to end it; False: there is none."""
+        if self.driver is None:
+            return False
+        steer(self.folder, "stop")
+        return True
 
     # --- what was made -------------------------------------------------------------------------
 
@@ -137,8 +177,34 @@ class Evolving:
         edits = self._kept_algorithm(generation - 1).individual(individual)
         return self.parent(generation - 1).edited(edits)
 
+    def lineage(self, generation: int, individual: int | None) -> list[LineageStep]:
+        """Return the ancestors of a parent or an individual, and what each mutation changed.
+
+        The last comes last; generations in which the parent stayed are left out.
+        """
+        last = generation if individual is None else generation - 1
+        winners = [(number, self.rows[number - 1].winner) for number in range(1, last + 1)]
+        if individual is not None:
+            winners.append((generation, individual))
+        return [self._step(number, one) for number, one in winners if one is not None]
+
+    def _step(self, generation: int, individual: int) -> LineageStep:
+        columns = self._columns[generation - 1]
+        differential = float(columns["force_differential"][individual])
+        if self.rows[generation - 1].winner == individual:
+            edits = self._edits[generation - 1]
+        else:
+            edits = self._kept_algorithm(generation - 1).individual(individual)
+        return LineageStep(
+            generation=generation,
+            individual=individual,
+            springs=int(columns["springs"][individual]),
+            force_differential=differential if np.isfinite(differential) else None,
+            edits=list(edits),
+        )
+
     def columns(self, first: int) -> dict[str, NDArray[np.float32]]:
-        """Return springs and force differential of all individuals from a generation on."""
+        """Return the axes of all individuals from a generation on."""
         with self._changed:
             chosen = self._columns[max(0, first - 1) :]
         return {
@@ -146,7 +212,7 @@ class Evolving:
                 [np.asarray(columns[name], dtype=np.float32) for columns in chosen]
                 or [np.empty(0, dtype=np.float32)]
             )
-            for name in ("springs", "force_differential")
+            for name in AXES
         }
 
     # --- in the thread -------------------------------------------------------------------------
@@ -178,21 +244,27 @@ class Evolving:
 
     @contextmanager
     def _created(self, design: Design) -> Iterator[RunWriter]:
-        with create(self.folder, design, self.parameters, self._start) as writer:
+        with create(self.folder, design, self.parameters, self._start, "studio") as writer:
             yield writer
 
     @contextmanager
     def _reopened(self) -> Iterator[RunWriter]:
-        with reopen(self.folder) as (_, writer):
+        with reopen(self.folder, "studio") as (run, writer):
+            if run.generations != len(self.rows) or run.parameters != self.parameters:
+                raise InputError("another process went on with the run; load the page again")
             yield writer
 
     def _advance(self, evolution: _core.Evolution, writer: RunWriter) -> None:
         written = time.monotonic()
+        requests = Requests(self.folder)
         while (reason := evolution.reached(*self.parameters.ending())) is None or self._wanted:
+            self._obey(requests, writer)
             with self._changed:
                 if self.status == "paused":
-                    writer.checkpoint()
-                    self._changed.wait_for(lambda: self.status != "paused" or bool(self._wanted))
+                    writer.stand()
+                    self._changed.wait_for(
+                        lambda: self.status != "paused" or bool(self._wanted), _POLL
+                    )
                 wanted, self._wanted = self._wanted, {}
                 ended = self.status == "ended"
             if ended:
@@ -213,6 +285,62 @@ class Evolving:
             self.status, self.reason = "ended", _ENDINGS[reason]
         save(self.parent(len(self.rows)), self.folder / "best.toml")
 
+    def _obey(self, requests: Requests, writer: RunWriter) -> None:
+        """Do what other processes asked."""
+        for request in requests.new():
+            writer.log(f"was asked to {request.what}")
+            if request.what == "pause":
+                self.pause()
+            elif request.what == "change":
+                values = self.parameters.model_dump() | request.parameters
+                try:
+                    checked_parameters(values, self._parents[0].file.method)
+                except InputError as error:
+                    writer.log(f"refused a change: {error}")
+                    continue
+                with self._changed:
+                    self._wanted |= request.parameters
+            else:
+                with self._changed:
+                    if self.status == "paused" and request.what == "continue":
+                        self.status, self.reason = "running", ""
+                    elif request.what == "stop":
+                        self.status, self.reason = "ended", "it was stopped"
+                self._tell()
+
+    def _follow(self) -> None:
+        """Read what another process writes, until it is gone or nobody looks any more."""
+        size, journal = -1, self.folder / "journal.jsonl"
+        while not self._watching.is_set():
+            watch(self.folder)
+            driver = driver_of(self.folder)
+            try:
+                now = journal.stat().st_size if journal.exists() else 0
+                grown = now != size
+                if grown or driver is None:
+                    self._read(open_run(self.folder))
+                    size = now
+            except SpringformError as error:
+                self.status, self.reason, self.driver = "failed", str(error), None
+                break
+            before = self.driver, self.status
+            self.driver = driver
+            if driver is not None:
+                self.status = "paused" if driver.standing else "running"
+            else:
+                self.status, self.reason = self._left()
+            if grown or (self.driver, self.status) != before:
+                self._tell()
+            if driver is None:
+                break
+            self._watching.wait(_POLL)
+
+    def _left(self) -> tuple[Status, str]:
+        """Return how a run stands that its driver has left."""
+        evolution = self._algorithm(len(self.rows), threads=1)
+        reason = evolution.reached(*self.parameters.ending())
+        return ("paused", "") if reason is None else ("ended", _ENDINGS[reason])
+
     def _keep(self, evolution: _core.Evolution, writer: RunWriter) -> None:
         result = evolution.advance()
         standing = evolution.measures
@@ -220,6 +348,7 @@ class Evolving:
         with self._changed:
             self._parents.append(self._parents[-1].edited(result["edits"]))
             self._columns.append(result["columns"])
+            self._edits.append(list(result["edits"]))
             self._resumed.append(
                 {
                     "parameters": self.parameters,
@@ -277,16 +406,26 @@ class Evolving:
     def _read(self, run: Run) -> None:
         """Take over what a run's folder holds."""
         start, population = run.start, run.parameters.population
-        self._start = start["springs"], start["force_differential"]
+        known = len(self.rows)
+        if not self._parents:
+            self._start = start["springs"], start["force_differential"]
+            self._parents = [run.design.closed]
+            self._resumed = [{"strategy": None, "suf": None}]
+        # Parameters may have been changed after the last generation that was read.
         self.parameters = run.parameters
-        self._parents = [run.design.closed]
-        at = {"parameters": run.parameters_after(0), "strategy": None, "suf": None}
-        self._resumed, self._columns, self.rows = [at], [], []
-        for number, line in enumerate(run.generation_lines, start=1):
+        self._resumed[known]["parameters"] = run.parameters_after(known)
+        if run.changed_after(known) & STRATEGY:
+            self._resumed[known]["strategy"] = None
+        if known:
+            update = {"changed": bool(run.changed_after(known))}
+            self.rows[-1] = self.rows[-1].model_copy(update=update)
+        self._algorithms.pop(known, None)
+        for number, line in enumerate(run.generation_lines[known:], start=known + 1):
             rows = slice((number - 1) * population, number * population)
             columns = {name: column[rows] for name, column in run.table.items()}
             self._parents.append(self._parents[-1].edited(line.edits))
             self._columns.append(columns)
+            self._edits.append(list(line.edits))
             changed = run.changed_after(number)
             self._resumed.append(
                 {

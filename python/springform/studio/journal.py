@@ -46,6 +46,8 @@ class DocumentSettings(_Record):
     """The design file that saving writes; None if there is none yet."""
     saved: str | None = None
     """SHA-256 of that file as it was last read or written."""
+    run: str | None = None
+    """The run folder that it was opened with."""
 
 
 class DoneLine(_Record):
@@ -112,7 +114,7 @@ class Journal:
 
     def belong_to(self, file: str | None, saved: str | None) -> None:
         """Note the design file that the document belongs to, and its hash."""
-        self.settings = DocumentSettings(file=file, saved=saved)
+        self.settings = self.settings.model_copy(update={"file": file, "saved": saved})
         write_atomically(self.folder / "document.json", _json(self.settings))
 
     def close(self) -> None:
@@ -146,7 +148,14 @@ class Journal:
         write_atomically(self.folder / "snapshot.json", text.encode())
 
 
-def create(folder: Path, design: Design, *, file: str | None, saved: str | None) -> None:
+def create(
+    folder: Path,
+    design: Design,
+    *,
+    file: str | None,
+    saved: str | None,
+    run: str | None = None,
+) -> None:
     """Make the folder of a new document.
 
     Raises `DesignError`: the design gives no net. `WriteError`: the folder can't be written.
@@ -159,7 +168,7 @@ def create(folder: Path, design: Design, *, file: str | None, saved: str | None)
     start = design_file.dump(design.closed.to_file(), "json")
     write_atomically(folder / "start.json", start.encode())
     # Last, because a folder with this file counts as a document.
-    settings = DocumentSettings(file=file, saved=saved)
+    settings = DocumentSettings(file=file, saved=saved, run=run)
     write_atomically(folder / "document.json", _json(settings))
 
 

@@ -66,7 +66,8 @@ class Library:
         Raises `InputError`: there is no such source, or it is no valid design.
         """
         if os.path.isdir(source) and is_run(source):
-            return self._create(open_run(source).best, None)
+            run = os.path.realpath(source)
+            return self._create(open_run(source).best, None, run)
         design = load(source)
         if not os.path.isfile(source):
             return self._create(design, None)
@@ -76,11 +77,11 @@ class Library:
                 return entry.id
         return self._create(design, file)
 
-    def _create(self, design: Design, file: str | None) -> str:
+    def _create(self, design: Design, file: str | None, run: str | None = None) -> str:
         words = re.sub(r"[^a-z0-9]+", "-", design.name.lower()).strip("-")[:40] or "net"
         document = f"{words}-{secrets.token_hex(3)}"
         saved = None if file is None else file_hash(file)
-        journal.create(self.home / document, design, file=file, saved=saved)
+        journal.create(self.home / document, design, file=file, saved=saved, run=run)
         return document
 
     def _readable(self) -> Iterator[Entry]:

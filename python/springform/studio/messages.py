@@ -142,6 +142,8 @@ class Evolve(_Message):
 
     type: Literal["evolve"] = "evolve"
     id: int
+    looked: bool = False
+    """Breed from what is looked at instead."""
     parameters: dict[str, Any]
 
 
@@ -178,6 +180,26 @@ class Reinstate(_Message):
 
     type: Literal["reinstate"] = "reinstate"
     id: int
+
+
+class LiveEvolve(_Message):
+    """Let the net evolve before one's eyes, steer it, and keep or discard what it grew."""
+
+    type: Literal["live_evolve"] = "live_evolve"
+    id: int
+    what: Literal["start", "pause", "continue", "change", "keep", "discard"]
+    parameters: dict[str, Any] = Field(default_factory=dict)
+
+
+class WeighCells(_Message):
+    """Brush a factor on the chance that evolution changes cells, and what descends from them."""
+
+    type: Literal["weigh_cells"] = "weigh_cells"
+    id: int
+    cells: Annotated[list[Address], Field(max_length=100_000)]
+    """None at all with no factor: all cells."""
+    factor: Annotated[float, Field(ge=0, le=1e6)] | None
+    """0: keep out; None: as if nothing had been brushed."""
 
 
 class Hold(_Message):
@@ -221,6 +243,8 @@ Request = Annotated[
     | Look
     | Follow
     | Reinstate
+    | LiveEvolve
+    | WeighCells
     | Hold
     | Release
     | Received,
@@ -359,6 +383,8 @@ class RunState(_Message):
     status: Literal["none", "running", "paused", "ended", "failed"]
     reason: str
     folder: str
+    driver: str
+    """Another process that drives it; empty: this studio does, or nobody."""
     following: bool
     parameters: dict[str, Any]
     generations: int
@@ -366,6 +392,30 @@ class RunState(_Message):
     first: int
     """Generation of the first row; earlier ones are as they were told before."""
     rows: list[GenerationRow]
+
+
+class LivePoint(_Message):
+    """What a generation of live evolution gave."""
+
+    generation: int
+    springs: int
+    force_differential: float | None
+
+
+class LiveState(_Message):
+    """Live evolution, and the cells that were brushed."""
+
+    type: Literal["live"] = "live"
+    status: Literal["none", "running", "paused", "failed"] = "none"
+    reason: str = ""
+    generation: int = 0
+    rate: float = 0.0
+    """Generations a second."""
+    points: list[LivePoint] = Field(default_factory=list)
+    """Of the last generations."""
+    parameters: dict[str, Any] = Field(default_factory=dict)
+    weights: dict[str, float] = Field(default_factory=dict)
+    """Factors by address of cells."""
 
 
 class Welcome(_Message):
@@ -397,7 +447,9 @@ class Problem(_Message):
     message: str
 
 
-Event = Annotated[DocumentState | RunState | Welcome | Reply | Problem, Field(discriminator="type")]
+Event = Annotated[
+    DocumentState | RunState | LiveState | Welcome | Reply | Problem, Field(discriminator="type")
+]
 
 
 # --- headers of binary frames ---------------------------------------------------------------------
@@ -450,7 +502,7 @@ class MotionHeader(_Message):
 
 
 class TableHeader(_Message):
-    """Springs and force differentials of all individuals from a generation on."""
+    """Measures of all individuals from a generation on."""
 
     frame: Literal["table"] = "table"
     first: int
@@ -463,6 +515,47 @@ Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="f
 
 
 # --- what is fetched ------------------------------------------------------------------------------
+
+
+class LineageStep(_Message):
+    """An ancestor, or the individual itself: what its mutation changed."""
+
+    generation: int
+    individual: int
+    springs: int
+    force_differential: float | None
+    edits: list[str]
+    """Such as ``12.0 subdivide 1 1 6 1``."""
+
+
+class Lineage(_Message):
+    """Where an individual came from, the last step last."""
+
+    steps: list[LineageStep]
+
+
+class Brushes(_Message):
+    """Ask for clusters of what is brushed on axes."""
+
+    brushes: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]]
+    """Least and most by axis."""
+    count: int
+
+
+class Cluster(_Message):
+    """A cluster of individuals, by the one nearest to its middle."""
+
+    generation: int
+    individual: int
+    size: int
+
+
+class Clusters(_Message):
+    """Clusters of what is brushed, the largest first."""
+
+    brushed: int
+    """Individuals that are brushed."""
+    clusters: list[Cluster]
 
 
 class SceneEntry(_Message):
@@ -518,6 +611,9 @@ class Protocol(_Message):
     opening: Opening
     opened: Opened
     refusal: Refusal
+    lineage: Lineage
+    brushes: Brushes
+    clusters: Clusters
 
 
 class _PlainSchema(GenerateJsonSchema):

@@ -92,6 +92,13 @@ class Motion:
             self._placed += 1
             self._disturb()
 
+    def place(self, nodes: list[str], positions: Floats) -> None:
+        """Note where nodes were shown, (n, 3) [m]: the next net starts from there."""
+        with self._changed:
+            self._network, self._nodes, self._positions = None, nodes, positions
+            self._placed += 1
+            self._disturb()
+
     def hold(self, hand: object, node: str, position: Floats) -> None:
         """Hold a node somewhere; every hand holds one at most."""
         with self._changed:

@@ -27,7 +27,7 @@ from ..design import load
 from ..errors import InputError
 from .exports import export
 from .library import Library
-from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
+from .messages import Brushes, DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
 from .session import Session
 from .telling import picture_of
 
@@ -99,6 +99,14 @@ def application(library: Library, token: str, port: int) -> Starlette:
             Route(
                 "/api/documents/{document}/run/{generation:int}/{individual:int}",
                 _answering(_individual),
+            ),
+            Route(
+                "/api/documents/{document}/run/clusters", _answering(_clusters), methods=["POST"]
+            ),
+            Route("/api/documents/{document}/lineage/{generation:int}", _answering(_lineage)),
+            Route(
+                "/api/documents/{document}/lineage/{generation:int}/{individual:int}",
+                _answering(_lineage),
             ),
             Route("/api/scenes/{scene}/picture", _answering(_scene_picture)),
             WebSocketRoute("/api/documents/{document}/socket", _socket),
@@ -290,6 +298,23 @@ async def _export(request: Request) -> Response:
         "cache-control": "no-store",
     }
     return Response(content, media_type=media_type, headers=headers)
+
+
+async def _clusters(request: Request) -> BaseModel:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    try:
+        asked = Brushes.model_validate_json(await request.body())
+    except ValidationError:
+        raise InputError("must be brushes and a number of clusters", key="body") from None
+    return await asyncio.to_thread(session.clusters, asked)
+
+
+async def _lineage(request: Request) -> BaseModel:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    place = request.path_params["generation"], request.path_params.get("individual")
+    return await asyncio.to_thread(session.lineage, *place)
 
 
 async def _individual(request: Request) -> Response:

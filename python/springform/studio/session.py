@@ -20,22 +20,31 @@ from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from . import commands, journal
 from .changes import Action, values_of
+from .choosing import brushed, clusters
 from .document import Document
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .library import file_hash
+from .live import Grown
+from .live_stage import LiveStage
 from .messages import (
     REQUEST,
     AnchorState,
+    Brushes,
+    Cluster,
+    Clusters,
     DocumentState,
     Evolve,
     Figures,
     Follow,
     HistoryLine,
     Hold,
+    Lineage,
+    LiveEvolve,
     Look,
     Looked,
     Move,
+    MoveAnchor,
     Preview,
     PreviewState,
     Problem,
@@ -50,13 +59,14 @@ from .messages import (
     TableHeader,
     Travel,
     Undo,
+    WeighCells,
     Welcome,
     protocol,
 )
 from .motion import Motion, State
 from .preview import preview_of
 from .spring_groups import group_lines
-from .telling import cell_types_of, figures_of, motion_frame, picture_of
+from .telling import cell_types_of, figures_of, motion_frame, picture_of, state_of
 
 _FRAMES_ON_THE_WAY = 3
 """Frames of motion that a window may not yet have drawn; more would only make it lag."""
@@ -122,6 +132,7 @@ class Session:
         self._looking: tuple[Looked, Design, Figures] | None = None
         self._following = False
         self._run: Evolving | None = self._newest_run()
+        self._live = LiveStage(self._tell_all, self._show_grown)
         self._run_told = 0.0
         self._run_waits = False
         self._revision = 0
@@ -145,6 +156,7 @@ class Session:
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
+            await self._live.close()
             if self._run is not None:
                 await asyncio.to_thread(self._run.stop)
             self._motion.close()
@@ -161,12 +173,15 @@ class Session:
             self._windows.add(window)
             window.tell(self._document_state())
             self._tell_run(window)
+            window.tell(self._live.state())
         return window
 
     def leave(self, window: Window) -> None:
         """Forget a window and let go what it holds."""
         self._windows.discard(window)
         self._motion.release(window)
+        if not self._windows:
+            self._live.pause()
 
     async def outgoing(self, window: Window) -> AsyncIterator[str | bytes]:
         """Yield what a window is to be sent, for as long as somebody asks."""
@@ -227,7 +242,10 @@ class Session:
             case Hold():
                 if request.node not in self.node_rows:
                     raise InputError("is no node of the net", key=request.node)
-                self._motion.hold(window, request.node, np.array(request.position))
+                if self._live.live is None:
+                    self._motion.hold(window, request.node, np.array(request.position))
+                else:
+                    self._live.move_anchor(self._anchor_at(request.node), request.position)
             case Release():
                 self._motion.release(window)
             case Move():
@@ -249,6 +267,14 @@ class Session:
         match request:
             case Evolve() | SteerRun():
                 await self._steer(request)
+                return []
+            case LiveEvolve():
+                await self._steer_live(request)
+            case WeighCells():
+                await self._live.weigh(request)
+                return []
+            case MoveAnchor() if self._live.live is not None:
+                self._live.move_anchor(request.anchor, request.position)
                 return []
             case Look():
                 self._following = False
@@ -359,12 +385,45 @@ class Session:
             self._journal.belong_to(settings.file, now)
         return held.to_file()
 
+    # --- live evolution ------------------------------------------------------------------------
+
+    async def _steer_live(self, request: LiveEvolve) -> None:
+        if request.what == "start":
+            self._check_design_is_shown()
+            self._following = False
+        kept = await self._live.steer(request, self.design)
+        if kept is not None:
+            design, generation = kept
+            label = f"Evolve live, {generation} generation{'' if generation == 1 else 's'}"
+            await self.act(lambda: (commands.whole(self.design, design, label), []))
+        elif request.what == "discard":
+            self._take_design()
+
+    def _show_grown(self, grown: Grown) -> None:
+        self._revision += 1
+        self._node_keys = set(grown.design.nodes)
+        self._keep_net(grown.design, grown.tables)
+        self._motion.place(grown.design.nodes, grown.equilibrium.positions)
+        self._state, self._state_frame = state_of(grown.equilibrium, self._revision), b""
+        for window in self._windows:
+            window.wake()
+
+    def _anchor_at(self, node: str) -> str:
+        design = self.design
+        for row, name in zip(design.anchors, design.anchor_names, strict=True):
+            if design.nodes[row] == node:
+                return name
+        problem = "is no anchor; while the net evolves only anchors can be dragged"
+        raise InputError(problem, key=node)
+
     # --- the run -------------------------------------------------------------------------------
 
     def _newest_run(self) -> Evolving | None:
         """Return the run that the document had last, to look at and to go on with."""
-        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"))
-        for folder in reversed(folders):
+        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"), reverse=True)
+        if self._journal.settings.run is not None:
+            folders.append(Path(self._journal.settings.run))
+        for folder in folders:
             run = Evolving(folder, self._run_changed)
             try:
                 run.open()
@@ -376,11 +435,15 @@ class Session:
     async def _steer(self, request: Evolve | SteerRun) -> None:
         run = self._run
         if isinstance(request, Evolve):
-            if run is not None and run.status in ("running", "paused"):
+            if self._live.live is not None:
+                raise InputError("the net evolves; keep or discard what it grew first")
+            if run is not None:
                 await asyncio.to_thread(run.stop)
             runs = self._journal.folder / "runs"
             run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
-            await self._in_thread(lambda: run.start(self.design, request.parameters))
+            values = {"cell_weights": self._live.weights} | request.parameters
+            start = self._start_of(request)
+            await self._in_thread(lambda: run.start(start, values))
             self._run, self._following = run, True
             for window in self._windows:
                 window.generations = 0
@@ -391,10 +454,17 @@ class Session:
         elif request.what == "continue":
             await self._in_thread(run.go_on)
         elif request.what == "pause":
-            run.pause()
-        else:
+            await self._in_thread(run.pause)
+        elif not await self._in_thread(run.end_driver):
             await asyncio.to_thread(run.stop)
         self._tell_runs()
+
+    def _start_of(self, request: Evolve) -> Design:
+        if not request.looked:
+            return self.design
+        if self._looking is None:
+            raise InputError("look at an individual first")
+        return self._looking[1]
 
     async def _follow(self, on: bool) -> None:
         self._following = on
@@ -406,6 +476,8 @@ class Session:
         if generation is None:
             self._looking = None
         else:
+            if self._live.live is not None:
+                raise InputError("the net evolves; keep or discard what it grew first")
             run = self._known_run()
 
             def rebuild() -> tuple[Looked, Design, Figures]:
@@ -441,11 +513,38 @@ class Session:
         header = TableHeader(first=first, population=run.parameters.population, arrays=[])
         return encode(header, run.columns(first))
 
+    def lineage(self, generation: int, individual: int | None) -> Lineage:
+        """Return where a parent or an individual of the run came from."""
+        run = self._known_run()
+        if not 1 <= generation <= len(run.rows):
+            raise InputError(f"there are generations 1 to {len(run.rows)}")
+        if individual is not None and not 0 <= individual < run.parameters.population:
+            raise InputError(f"there are individuals 0 to {run.parameters.population - 1}")
+        return Lineage(steps=run.lineage(generation, individual))
+
+    def clusters(self, asked: Brushes) -> Clusters:
+        """Return clusters of the individuals that are brushed."""
+        run = self._known_run()
+        columns: dict[str, Any] = dict(run.columns(1))
+        population = run.parameters.population
+        columns["generation"] = np.arange(len(columns["springs"])) // population + 1
+        rows = np.flatnonzero(brushed(columns, asked.brushes))
+        found = clusters(columns, rows, asked.count)
+        return Clusters(
+            brushed=len(rows),
+            clusters=[
+                Cluster(generation=row // population + 1, individual=row % population, size=size)
+                for row, size in found
+            ],
+        )
+
     def picture(self, generation: int, individual: int) -> bytes:
         """Return the net of an individual at equilibrium, as a frame of its net and its motion."""
         return picture_of(self._known_run().individual(generation, individual))
 
     def _check_design_is_shown(self) -> None:
+        if self._live.live is not None:
+            raise InputError("the net evolves; keep or discard what it grew first")
         if self._looking is not None:
             raise InputError("this is not your design; take it over, or go back to your design")
 
@@ -490,6 +589,7 @@ class Session:
                 status="none" if run is None else run.status,
                 reason="" if run is None else run.reason,
                 folder="" if run is None else str(run.folder),
+                driver="" if run is None or run.driver is None else str(run.driver),
                 following=self._following,
                 parameters={} if run is None else run.parameters.model_dump(mode="json"),
                 generations=window.generations,
@@ -559,9 +659,12 @@ class Session:
         self._revision += 1
         design = self.shown
         self._node_keys = set(design.nodes)
-        self._nets[self._revision] = (design, tables_of(design))
-        self._nets.pop(self._revision - _NETS_KEPT, None)
+        self._keep_net(design, tables_of(design))
         self._motion.take(design, self._revision)
+
+    def _keep_net(self, design: Design, tables: Tables) -> None:
+        self._nets[self._revision] = (design, tables)
+        self._nets.pop(self._revision - _NETS_KEPT, None)
 
     def _measure(self) -> None:
         position = self._journal.document.position
@@ -575,7 +678,13 @@ class Session:
         for window in self._windows:
             window.tell(state)
 
+    def _tell_all(self, event: BaseModel) -> None:
+        for window in self._windows:
+            window.tell(event)
+
     def _moved(self, state: State) -> None:
+        if self._live.live is not None:
+            return  # a last step of the net that was shown before
         self._state, self._state_frame = state, b""
         for window in self._windows:
             window.wake()

@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..design import Design
 from ..design_schema import BUILT_IN_CELL_TYPES
+from ..network import Equilibrium
 from .frames import encode, net_frame, tables_of
 from .messages import CellTypeChoice, Figures, MotionHeader
 from .motion import State
@@ -60,11 +61,10 @@ def motion_frame(state: State, design: Design) -> bytes:
     return encode(header, arrays)
 
 
-def picture_of(design: Design) -> bytes:
-    """Return the net of a design at equilibrium: the net frame's length, it, and a motion frame."""
-    equilibrium = design.solve()
-    state = State(
-        revision=1,
+def state_of(equilibrium: Equilibrium, revision: int) -> State:
+    """Return the state of a net that rests at equilibrium."""
+    return State(
+        revision=revision,
         positions=equilibrium.positions,
         forces=equilibrium.forces,
         reactions=equilibrium.reactions,
@@ -76,5 +76,10 @@ def picture_of(design: Design) -> bytes:
         reason=equilibrium.reason,
         held=(),
     )
+
+
+def picture_of(design: Design) -> bytes:
+    """Return the net of a design at equilibrium: the net frame's length, it, and a motion frame."""
+    state = state_of(design.solve(), 1)
     net = net_frame(design, tables_of(design), 1, None)
     return len(net).to_bytes(4, "little") + net + motion_frame(state, design)

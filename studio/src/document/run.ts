@@ -16,12 +16,15 @@ export interface Individuals {
   springs: Float32Array;
   /** NaN where undefined. */
   differential: Float32Array;
+  /** Every axis by its name, those two among them. */
+  columns: Record<string, Float32Array>;
 }
 
 export const NO_INDIVIDUALS: Individuals = {
   population: 1,
   springs: new Float32Array(),
   differential: new Float32Array(),
+  columns: {},
 };
 
 /** The run after a message: rows from `first` on are new. */
@@ -35,17 +38,20 @@ export async function moreIndividuals(before: Individuals): Promise<Individuals>
   const known = Math.floor(before.springs.length / before.population);
   const { header, arrays } = await fetchTable(documentInAddress(), known + 1);
   if (header.frame !== "table") throw new Error("the engine sent no table");
-  const joined = (old: Float32Array, name: string) => {
+  const joined = (name: string) => {
+    const old = before.columns[name] ?? new Float32Array();
     const fresh = arrays.floats(name);
     const all = new Float32Array(old.length + fresh.length);
     all.set(old);
     all.set(fresh, old.length);
     return all;
   };
+  const columns = Object.fromEntries(header.arrays.map(({ name }) => [name, joined(name)]));
   return {
     population: header.population,
-    springs: joined(before.springs, "springs"),
-    differential: joined(before.differential, "force_differential"),
+    springs: columns.springs,
+    differential: columns.force_differential,
+    columns,
   };
 }
 

@@ -2,7 +2,15 @@
 import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
-import type { DocumentState, PreviewState, Protocol, Reply, RunState } from "../protocol/messages";
+import type {
+  DocumentState,
+  LiveState,
+  PreviewState,
+  Protocol,
+  Reply,
+  RunState,
+} from "../protocol/messages";
+import type { Brushes } from "./choosing";
 import type { ColourChoice } from "./colouring";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
@@ -10,9 +18,10 @@ import type { Theme } from "./palettes";
 import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
 import type { Section } from "./section";
 import { NOTHING, type Selection, stillThere } from "./selection";
+import { GROW } from "./weights";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "retype" | "cut" | "add";
+export type ToolId = "pull" | "subdivide" | "retype" | "cut" | "add" | "weigh";
 
 /** How the net is shown. */
 export interface View {
@@ -54,7 +63,12 @@ export interface State {
   net: Net | null;
   motion: Motion | null;
   run: Run | null;
+  live: LiveState | null;
+  /** Factor that the brush gives to cells; null takes factors away. */
+  brush: number | null;
   individuals: Individuals;
+  /** Brushes on axes of the individuals. */
+  brushes: Brushes;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
   preview: Preview | null;
@@ -106,7 +120,10 @@ export const store = createStore<State>()(() => ({
   net: null,
   motion: null,
   run: null,
+  live: null,
+  brush: GROW,
   individuals: NO_INDIVIDUALS,
+  brushes: {},
   gallery: false,
   preview: null,
   selection: NOTHING,
@@ -135,6 +152,7 @@ export function openDocument(id: string): void {
     net: null,
     motion: null,
     run: null,
+    live: null,
     individuals: NO_INDIVIDUALS,
     preview: null,
     selection: NOTHING,
@@ -209,6 +227,7 @@ function takeEvent(event: Protocol["event"]): void {
   if (event.type === "document") store.setState({ document: event });
   if (event.type === "problem") notify(event.message);
   if (event.type === "run") takeRun(event);
+  if (event.type === "live") store.setState({ live: event });
 }
 
 const TABLE_EVERY = 500; // ms
@@ -219,7 +238,7 @@ function takeRun(state: RunState): void {
   const other = before?.state.folder !== state.folder;
   store.setState({
     run: withMessage(before, state),
-    ...(other ? { individuals: NO_INDIVIDUALS } : {}),
+    ...(other ? { individuals: NO_INDIVIDUALS, brushes: {} } : {}),
   });
   if (tableTimer || state.generations === 0) return;
   tableTimer = window.setTimeout(async () => {

@@ -10,6 +10,7 @@ import { DialogsContext, useDialogs } from "./dialogs";
 import { LookingBanner } from "./EvolvePanel";
 import { Gallery } from "./Gallery";
 import { Inspector } from "./Inspector";
+import { LiveBanner } from "./LivePanel";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
@@ -70,6 +71,7 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
       <ViewportPane onStage={onStage}>
         <ToolHelp />
         <LookingBanner />
+        <LiveBanner />
         <LineState />
       </ViewportPane>
       {gallery && <Gallery />}

@@ -3,6 +3,9 @@ import { Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
 import { inDigits } from "../document/scale";
 import { ask, store } from "../document/store";
+import { ClusterSection, LineageSection } from "./Choosing";
+import { LiveSection } from "./LivePanel";
+import { ParallelCoordinates } from "./ParallelCoordinates";
 import { Choice, Fact, NumberField, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
@@ -56,12 +59,16 @@ export function EvolvePanel() {
   const status = run?.state.status ?? "none";
   return (
     <>
+      <LiveSection />
       {run && status !== "none" && <Course />}
       {run && run.rows.length > 0 && (
         <Section title="Individuals" aside={<GalleryButton />}>
           <Scatter />
+          <ParallelCoordinates />
         </Section>
       )}
+      <LineageSection />
+      {run && run.rows.length > 0 && <ClusterSection />}
       <Parameters />
     </>
   );
@@ -113,15 +120,20 @@ function Course() {
           Follow in the view
         </label>
       </div>
+      {run.state.driver && (
+        <p className="explain">
+          Driven by {run.state.driver}, which does what you ask between two generations.
+        </p>
+      )}
       {last && (
         <>
-          <RunGraph run={run} of="differential" />
+          <RunGraph rows={run.rows} of="differential" />
           <p className="graph-words">
             <i className="swatch accent" /> parent’s differential{" "}
             <b>{inDigits(last.force_differential, 4)}</b>
             <i className="swatch band" /> population
           </p>
-          <RunGraph run={run} of="springs" />
+          <RunGraph rows={run.rows} of="springs" />
           <p className="graph-words">
             <i className="swatch good" /> springs <b>{last.springs.toLocaleString("en")}</b>
           </p>
@@ -148,7 +160,11 @@ function Parameters() {
   const alive = run?.state.status === "running" || run?.state.status === "paused";
   const start = () => {
     ask(
-      { type: "evolve", parameters: { ...form, until_springs: form.until_springs || null } },
+      {
+        type: "evolve",
+        looked: false,
+        parameters: { ...form, until_springs: form.until_springs || null },
+      },
       "Starting the run",
     );
   };
@@ -302,10 +318,20 @@ function GalleryButton() {
   );
 }
 
+/** Parameters of a run for another one that goes on from one of its individuals. */
+function changeableOf(parameters: Record<string, unknown>): Record<string, unknown> {
+  return Object.fromEntries(
+    ["population", "seed", ...CHANGEABLE].flatMap((name) =>
+      parameters[name] == null ? [] : [[name, parameters[name]]],
+    ),
+  );
+}
+
 /** Over the net, while something else than the design is shown. */
 export function LookingBanner() {
   const looking = useStudio((state) => state.document?.looking ?? null);
   const figures = useStudio((state) => state.document?.figures);
+  const run = useStudio((state) => state.run);
   if (!looking || !figures) return null;
   return (
     <div className="looking" role="status">
@@ -323,6 +349,18 @@ export function LookingBanner() {
         onClick={() => ask({ type: "reinstate" }, "Taking it over")}
       >
         Take over as my design
+      </button>
+      <button
+        type="button"
+        className="button"
+        onClick={() =>
+          ask(
+            { type: "evolve", looked: true, parameters: changeableOf(run?.state.parameters ?? {}) },
+            "Starting the run",
+          )
+        }
+      >
+        Breed from this
       </button>
       <button
         type="button"

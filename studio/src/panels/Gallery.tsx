@@ -2,6 +2,7 @@
 import { useVirtualizer } from "@tanstack/react-virtual";
 import { X } from "lucide-react";
 import { useMemo, useRef, useState } from "react";
+import { maskOf } from "../document/choosing";
 import type { Individuals } from "../document/run";
 import { inDigits } from "../document/scale";
 import { ask, store } from "../document/store";
@@ -22,8 +23,21 @@ export function Gallery() {
   const [order, setOrder] = useState<Order>("differential");
   const box = useRef<HTMLDivElement>(null);
   const generations = Math.floor(individuals.springs.length / individuals.population);
+  const brushes = useStudio((state) => state.brushes);
+  const mask = useMemo(() => maskOf(individuals, brushes), [individuals, brushes]);
+  /** Generations with somebody to show, the newest first. */
+  const shown = useMemo(() => {
+    const all = Array.from({ length: generations }, (_, at) => generations - at);
+    const { population } = individuals;
+    return mask
+      ? all.filter((one) => mask.subarray((one - 1) * population, one * population).includes(1))
+      : all;
+  }, [generations, individuals, mask]);
+  const chosen = mask
+    ? mask.reduce((sum, one) => sum + one, 0)
+    : generations * individuals.population;
   const rows = useVirtualizer({
-    count: generations,
+    count: shown.length,
     getScrollElement: () => box.current,
     estimateSize: () => HEIGHT,
     overscan: 1,
@@ -37,11 +51,11 @@ export function Gallery() {
     paddingStart: 44,
   });
   // biome-ignore lint/correctness/useExhaustiveDependencies: made anew when there are more, or another order
-  const orders = useMemo(() => new Map<number, number[]>(), [individuals, order]);
+  const orders = useMemo(() => new Map<number, number[]>(), [individuals, order, mask]);
   const orderOf = (generation: number) => {
     let found = orders.get(generation);
     if (!found) {
-      found = ordered(individuals, generation, order);
+      found = ordered(individuals, generation, order, mask);
       orders.set(generation, found);
     }
     return found;
@@ -51,8 +65,7 @@ export function Gallery() {
       <header>
         <h2>Individuals</h2>
         <span>
-          {(generations * individuals.population).toLocaleString("en")} in {generations}{" "}
-          generations, the newest first
+          {chosen.toLocaleString("en")} in {shown.length} generations, the newest first
         </span>
         <div className="gap" />
         <Choice
@@ -83,7 +96,7 @@ export function Gallery() {
           }}
         >
           {rows.getVirtualItems().map((row) => {
-            const generation = generations - row.index;
+            const generation = shown[row.index];
             const order = orderOf(generation);
             return (
               <div
@@ -94,6 +107,7 @@ export function Gallery() {
                 <b>{generation}</b>
                 {columns.getVirtualItems().map((column) => {
                   const individual = order[column.index];
+                  if (individual === undefined) return null;
                   const at = (generation - 1) * individuals.population + individual;
                   const differential = inDigits(individuals.differential[at]);
                   const current =
@@ -139,14 +153,20 @@ function ordered(
   { population, springs, differential }: Individuals,
   generation: number,
   order: Order,
+  mask: Uint8Array | null,
 ): number[] {
   const first = (generation - 1) * population;
-  const numbers = Array.from({ length: population }, (_, number) => number);
+  const numbers = Array.from({ length: population }, (_, number) => number).filter(
+    (number) => !mask || mask[first + number],
+  );
   if (order === "number") return numbers;
   const value = (number: number) => {
     const found = (order === "springs" ? springs : differential)[first + number];
     return Number.isFinite(found) ? found : Number.POSITIVE_INFINITY;
   };
-  const values = numbers.map(value);
-  return numbers.sort((a, b) => (values[a] === values[b] ? a - b : values[a] < values[b] ? -1 : 1));
+  const values = new Map(numbers.map((number) => [number, value(number)]));
+  return numbers.sort((a, b) => {
+    const [first, second] = [values.get(a)!, values.get(b)!];
+    return first === second ? a - b : first < second ? -1 : 1;
+  });
 }

@@ -7,12 +7,11 @@ import { useStudio } from "./use";
 
 type Column = (number | null)[];
 
-export function RunGraph({ run, of }: { run: Run; of: "differential" | "springs" }) {
+export function RunGraph({ rows, of }: { rows: Run["rows"]; of: "differential" | "springs" }) {
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const theme = useStudio((state) => state.theme);
   const marks = useRef<number[]>([]);
-  const { rows } = run;
   // biome-ignore lint/correctness/useExhaustiveDependencies: made anew when the colours of the page change
   useEffect(() => {
     const styles = getComputedStyle(document.documentElement);

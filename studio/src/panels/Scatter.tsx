@@ -1,5 +1,6 @@
 // All individuals of a run by springs and force differential; the Pareto set stands out. A click looks at one.
 import { useEffect, useMemo, useRef, useState } from "react";
+import { maskOf } from "../document/choosing";
 import { paretoOf, placeOf } from "../document/run";
 import { inDigits } from "../document/scale";
 import { ask } from "../document/store";
@@ -17,6 +18,8 @@ export function Scatter() {
   const individuals = useStudio((state) => state.individuals);
   const theme = useStudio((state) => state.theme);
   const looking = useStudio((state) => state.document?.looking ?? null);
+  const brushes = useStudio((state) => state.brushes);
+  const mask = useMemo(() => maskOf(individuals, brushes), [individuals, brushes]);
   const [over, setOver] = useState<number | null>(null);
   const front = useMemo(() => paretoOf(individuals), [individuals]);
   const frame = useMemo(() => frameOf(individuals), [individuals]);
@@ -46,6 +49,7 @@ export function Scatter() {
     context.fillStyle = colour("--faint");
     context.globalAlpha = individuals.springs.length > 5000 ? 0.22 : 0.4;
     for (let row = 0; row < individuals.springs.length; row++) {
+      if (mask && !mask[row]) continue;
       const at = y(row);
       if (at >= EDGE.top - 1) context.fillRect(x(row) - 1, at - 1, 2, 2);
     }
@@ -58,7 +62,7 @@ export function Scatter() {
       else context.moveTo(x(row), y(row));
     });
     context.stroke();
-    for (const row of front) dot(context, x(row), y(row), 2.6);
+    for (const row of front) if (!mask || mask[row]) dot(context, x(row), y(row), 2.6);
     const at =
       looking?.individual != null
         ? (looking.generation - 1) * individuals.population + looking.individual
@@ -66,7 +70,7 @@ export function Scatter() {
     context.fillStyle = colour("--ink");
     for (const row of [at, over])
       if (row !== null && row < individuals.springs.length) dot(context, x(row), y(row), 4.5);
-  }, [individuals, front, frame, theme, over, looking]);
+  }, [individuals, front, frame, theme, over, looking, mask]);
 
   const nearest = (event: React.MouseEvent): number | null => {
     const box = canvas.current!.getBoundingClientRect();
@@ -80,8 +84,8 @@ export function Scatter() {
         best = row;
       }
     };
-    for (let row = 0; row < individuals.springs.length; row++) look(row, 0);
-    for (const row of front) look(row, 3);
+    for (let row = 0; row < individuals.springs.length; row++) if (!mask || mask[row]) look(row, 0);
+    for (const row of front) if (!mask || mask[row]) look(row, 3);
     return best;
   };
   const told = over === null ? null : placeOf(individuals, over);

@@ -85,12 +85,15 @@ function Residual() {
 
 function Counts() {
   const figures = useStudio((state) => state.document?.figures);
+  const net = useStudio((state) => state.net);
+  const live = useStudio((state) => (state.live?.status ?? "none") !== "none");
   if (!figures) return null;
   const count = (value: number) => value.toLocaleString("en");
   return (
     <span className="status-fact">
-      <b>{count(figures.springs)}</b> springs · <b>{count(figures.nodes)}</b> nodes ·{" "}
-      <b>{count(figures.cells)}</b> cells
+      <b>{count(live && net ? net.ends.length / 2 : figures.springs)}</b> springs ·{" "}
+      <b>{count(live && net ? net.nodes.length : figures.nodes)}</b> nodes ·{" "}
+      <b>{count(live && net ? net.addresses.length : figures.cells)}</b> cells
     </span>
   );
 }

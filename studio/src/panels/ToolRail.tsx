@@ -1,5 +1,5 @@
 // The tools at the left edge.
-import { Brush, Hand, PaintBucket, Scissors, Waypoints } from "lucide-react";
+import { Brush, Hand, PaintBucket, Scissors, Sprout, Waypoints } from "lucide-react";
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
@@ -19,6 +19,11 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
     id: "add",
     icon: <Waypoints />,
     help: "Click one node, then another, to tie a spring between them.",
+  },
+  {
+    id: "weigh",
+    icon: <Sprout />,
+    help: "Brush over cells where evolution is to grow, or to keep out: choose which in the Evolve panel.",
   },
 ];
 

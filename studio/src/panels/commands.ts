@@ -215,6 +215,29 @@ export const COMMANDS: Command[] = [
   { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
   { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
   {
+    id: "tool-weigh",
+    label: "Brush where evolution grows",
+    group: "Tools",
+    keys: "E",
+    run: tool("weigh"),
+  },
+  {
+    id: "live",
+    label: "Evolve live, or pause it",
+    group: "Net",
+    keys: "L",
+    run: () => {
+      const status = store.getState().live?.status ?? "none";
+      const what = {
+        none: "start",
+        running: "pause",
+        paused: "continue",
+        failed: "discard",
+      } as const;
+      ask({ type: "live_evolve", what: what[status], parameters: {} }, "Evolving");
+    },
+  },
+  {
     id: "fit",
     label: "Fit the net",
     group: "View",

@@ -1,7 +1,7 @@
 // What is fetched rather than streamed: scenes, documents and their pictures.
 import { engineAddress } from "./address";
 import { decodeFrame, type Frame } from "./frames";
-import type { Opened, Opening, Refusal, Shelf } from "./messages";
+import type { Brushes, Clusters, Lineage, Opened, Opening, Refusal, Shelf } from "./messages";
 
 async function answer(path: string, options: RequestInit = {}, query = ""): Promise<Response> {
   let response: Response;
@@ -40,4 +40,21 @@ export async function fetchPicture(path: string): Promise<[net: Frame, motion: F
 export async function fetchTable(document: string, first: number): Promise<Frame> {
   const response = await answer(`/api/documents/${document}/run`, {}, `&from=${first}`);
   return decodeFrame(await response.arrayBuffer());
+}
+
+/** Clusters of the individuals that are brushed. */
+export async function fetchClusters(document: string, brushes: Brushes): Promise<Clusters> {
+  const body = JSON.stringify(brushes);
+  const path = `/api/documents/${document}/run/clusters`;
+  return (await answer(path, { method: "POST", body })).json() as Promise<Clusters>;
+}
+
+/** Where a parent, or an individual, came from. */
+export async function fetchLineage(
+  document: string,
+  generation: number,
+  individual: number | null,
+): Promise<Lineage> {
+  const place = individual === null ? generation : `${generation}/${individual}`;
+  return (await answer(`/api/documents/${document}/lineage/${place}`)).json() as Promise<Lineage>;
 }

@@ -25,15 +25,20 @@ export interface Protocol {
     | Look
     | Follow
     | Reinstate
+    | LiveEvolve
+    | WeighCells
     | Hold
     | Release
     | Received;
-  event: DocumentState | RunState | Welcome | Reply | Problem;
+  event: DocumentState | RunState | LiveState | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
   opened: Opened;
   refusal: Refusal;
+  lineage: Lineage;
+  brushes: Brushes;
+  clusters: Clusters;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -228,6 +233,10 @@ export interface Move {
 export interface Evolve {
   type: "evolve";
   id: number;
+  /**
+   * Breed from what is looked at instead.
+   */
+  looked: boolean;
   parameters: {
     [k: string]: unknown;
   };
@@ -272,6 +281,34 @@ export interface Follow {
 export interface Reinstate {
   type: "reinstate";
   id: number;
+}
+/**
+ * Let the net evolve before one's eyes, steer it, and keep or discard what it grew.
+ */
+export interface LiveEvolve {
+  type: "live_evolve";
+  id: number;
+  what: "start" | "pause" | "continue" | "change" | "keep" | "discard";
+  parameters: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Brush a factor on the chance that evolution changes cells, and what descends from them.
+ */
+export interface WeighCells {
+  type: "weigh_cells";
+  id: number;
+  /**
+   * None at all with no factor: all cells.
+   *
+   * @maxItems 100000
+   */
+  cells: string[];
+  /**
+   * 0: keep out; None: as if nothing had been brushed.
+   */
+  factor: number | null;
 }
 /**
  * Hold a node somewhere for as long as it is dragged.
@@ -436,6 +473,10 @@ export interface RunState {
   status: "none" | "running" | "paused" | "ended" | "failed";
   reason: string;
   folder: string;
+  /**
+   * Another process that drives it; empty: this studio does, or nobody.
+   */
+  driver: string;
   following: boolean;
   parameters: {
     [k: string]: unknown;
@@ -476,6 +517,40 @@ export interface GenerationRow {
    * Parameters were changed after it.
    */
   changed: boolean;
+}
+/**
+ * Live evolution, and the cells that were brushed.
+ */
+export interface LiveState {
+  type: "live";
+  status: "none" | "running" | "paused" | "failed";
+  reason: string;
+  generation: number;
+  /**
+   * Generations a second.
+   */
+  rate: number;
+  /**
+   * Of the last generations.
+   */
+  points: LivePoint[];
+  parameters: {
+    [k: string]: unknown;
+  };
+  /**
+   * Factors by address of cells.
+   */
+  weights: {
+    [k: string]: number;
+  };
+}
+/**
+ * What a generation of live evolution gave.
+ */
+export interface LivePoint {
+  generation: number;
+  springs: number;
+  force_differential: number | null;
 }
 /**
  * First message to a window.
@@ -614,7 +689,7 @@ export interface MotionHeader {
   arrays: ArrayHeader[];
 }
 /**
- * Springs and force differentials of all individuals from a generation on.
+ * Measures of all individuals from a generation on.
  */
 export interface TableHeader {
   frame: "table";
@@ -669,4 +744,57 @@ export interface Opened {
  */
 export interface Refusal {
   problem: string;
+}
+/**
+ * Where an individual came from, the last step last.
+ */
+export interface Lineage {
+  steps: LineageStep[];
+}
+/**
+ * An ancestor, or the individual itself: what its mutation changed.
+ */
+export interface LineageStep {
+  generation: number;
+  individual: number;
+  springs: number;
+  force_differential: number | null;
+  /**
+   * Such as ``12.0 subdivide 1 1 6 1``.
+   */
+  edits: string[];
+}
+/**
+ * Ask for clusters of what is brushed on axes.
+ */
+export interface Brushes {
+  /**
+   * Least and most by axis.
+   */
+  brushes: {
+    /**
+     * @minItems 2
+     * @maxItems 2
+     */
+    [k: string]: number[];
+  };
+  count: number;
+}
+/**
+ * Clusters of what is brushed, the largest first.
+ */
+export interface Clusters {
+  /**
+   * Individuals that are brushed.
+   */
+  brushed: number;
+  clusters: Cluster[];
+}
+/**
+ * A cluster of individuals, by the one nearest to its middle.
+ */
+export interface Cluster {
+  generation: number;
+  individual: number;
+  size: number;
 }

@@ -6,6 +6,7 @@ import { Brushing } from "./brushing";
 import { Pulling } from "./pulling";
 import { Adding, Cutting } from "./springs";
 import type { Pointer, Tool } from "./tool";
+import { Weighing } from "./weighing";
 
 const CLICK_REACH = 4; // px
 
@@ -17,6 +18,7 @@ export class Hands {
     retype: new Brushing("retype"),
     cut: new Cutting(),
     add: new Adding(),
+    weigh: new Weighing(),
   };
   private press: { x: number; y: number; hit: Hit | null; taken: boolean; far: boolean } | null =
     null;

@@ -28,13 +28,15 @@ export class Pulling implements Tool {
   private held: Held | null = null;
 
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
-    const { net, motion } = store.getState();
+    const { net, motion, live } = store.getState();
     const arm = viewport.armUnder(pointer.x, pointer.y);
     const node = arm?.node ?? (hit?.kind === "node" ? hit.row : null);
     if (node === null || !net || !motion) return false;
     const place = positionOf(motion, node);
     const seen = viewport.project(place) ?? [pointer.x, pointer.y];
     const number = net.anchors.indexOf(node);
+    // While the net evolves it can only be pulled by its anchors.
+    if (number < 0 && (live?.status ?? "none") !== "none") return false;
     this.held = {
       axis: arm?.axis ?? null,
       key: net.nodes[node],

@@ -9,6 +9,7 @@ import { placeOn, scaleOf } from "../document/scale";
 import { type Cut, clipped, cutOf, keeps, type Lines } from "../document/section";
 import { selectedRows } from "../document/selection";
 import { type State, store } from "../document/store";
+import { factorOf } from "../document/weights";
 import { arrowsOf } from "./arrows";
 import { Eye, type StandardView } from "./camera";
 import { type Axis, armedNode, armLength, armUnder, type Guide, guideLines } from "./guides";
@@ -23,6 +24,8 @@ const GROUND: Record<State["theme"], string> = { dark: "#0e1117", light: "#f6f7f
 const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22, 26, 33] };
 const ANCHOR: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [30, 36, 45] };
 const ARROW: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+const GROW_HERE: Record<State["theme"], Colour> = { dark: [86, 197, 150], light: [13, 107, 64] };
+const KEEP_OUT: Record<State["theme"], Colour> = { dark: [255, 110, 100], light: [179, 42, 36] };
 const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
 const COMING: Record<State["theme"], Colour> = { dark: [76, 195, 138], light: [21, 128, 79] };
 const GOING: Record<State["theme"], Colour> = { dark: [255, 77, 79], light: [214, 32, 36] };
@@ -243,6 +246,7 @@ export class Viewport {
       "document",
       "tool",
       "preview",
+      "live",
     ];
     if (!before || seen.some((key) => state[key] !== before[key])) this.redraw(true);
   }
@@ -388,7 +392,7 @@ export class Viewport {
   }
 
   private updateSkin(
-    { view, selection, theme, hover }: State,
+    { view, selection, theme, hover, live }: State,
     net: Net,
     motion: NonNullable<State["motion"]>,
   ): void {
@@ -400,9 +404,23 @@ export class Viewport {
     else this.skin.clear();
     const cells = new Set([...selectedRows(net, selection, "cells"), ...this.brushed]);
     if (hover?.kind === "cell") cells.add(hover.row);
+    const weights = live?.weights ?? {};
+    const factors = new Map<number, number>();
+    if (Object.keys(weights).length)
+      net.addresses.forEach((address, cell) => {
+        const factor = factorOf(weights, address);
+        if (factor !== 1) factors.set(cell, factor);
+      });
+    for (const cell of factors.keys()) cells.add(cell);
+    const weighed = (cell: number) =>
+      (factors.get(cell) ?? 1) < 1 ? KEEP_OUT[theme] : GROW_HERE[theme];
     const chosen = new Set(selectedRows(net, selection, "cells"));
     this.markedSkin.set(net, motion, cells, (cell) =>
-      this.brushed.has(cell) ? MARK[theme] : chosen.has(cell) ? INK[theme] : MARK[theme],
+      chosen.has(cell) && !this.brushed.has(cell)
+        ? INK[theme]
+        : factors.has(cell) && hover?.row !== cell
+          ? weighed(cell)
+          : MARK[theme],
     );
   }
 }

@@ -1,0 +1,155 @@
+// Live evolution: the net evolves before one's eyes; anchors are dragged and cells brushed meanwhile.
+import { Check, Eraser, Pause, Play, Sprout, Square, X } from "lucide-react";
+import type { ReactNode } from "react";
+import { inDigits } from "../document/scale";
+import { ask, store } from "../document/store";
+import { GROW } from "../document/weights";
+import type { GenerationRow, LiveState } from "../protocol/messages";
+import { Fact, Section } from "./parts";
+import { RunGraph } from "./RunGraph";
+import { useStudio } from "./use";
+
+type Step = "start" | "pause" | "continue" | "keep" | "discard";
+
+/** Asks for a step of live evolution. */
+export function steerLive(what: Step): void {
+  ask(
+    { type: "live_evolve", what, parameters: {} },
+    what === "keep" ? "Keeping the net" : "Evolving",
+  );
+}
+
+export function LiveSection() {
+  const live = useStudio((state) => state.live);
+  const alive = live !== null && live.status !== "none";
+  return (
+    <Section title="Live" aside={alive ? <span className="aside">{rateOf(live)}</span> : undefined}>
+      {alive ? (
+        <Course live={live} />
+      ) : (
+        <>
+          <p className="explain">
+            The net evolves before your eyes. Drag anchors and brush cells meanwhile; your design
+            stays as it is until you keep what grew.
+          </p>
+          <div className="row">
+            <button
+              type="button"
+              className="button icon primary"
+              onClick={() => steerLive("start")}
+            >
+              <Sprout /> Evolve live
+            </button>
+          </div>
+        </>
+      )}
+      <Brushes />
+    </Section>
+  );
+}
+
+function Course({ live }: { live: LiveState }) {
+  const last = live.points.at(-1);
+  return (
+    <>
+      <div className="row">
+        {live.status === "running" ? (
+          <button type="button" className="button icon" onClick={() => steerLive("pause")}>
+            <Pause /> Pause
+          </button>
+        ) : (
+          <button
+            type="button"
+            className="button icon"
+            disabled={live.status === "failed"}
+            onClick={() => steerLive("continue")}
+          >
+            <Play /> Continue
+          </button>
+        )}
+        <button type="button" className="button icon primary" onClick={() => steerLive("keep")}>
+          <Square /> Stop and keep
+        </button>
+      </div>
+      <RunGraph rows={rowsOf(live)} of="differential" />
+      <p className="graph-words">
+        <i className="swatch accent" /> force differential{" "}
+        <b>{inDigits(last?.force_differential ?? null, 4)}</b>
+      </p>
+      <Fact name="Generations" value={live.generation} digits={6} />
+      <Fact name="Generations a second" value={live.rate} digits={3} />
+      <Fact name="Springs" value={last?.springs ?? null} digits={6} />
+    </>
+  );
+}
+
+function Brushes() {
+  const tool = useStudio((state) => state.tool);
+  const brush = useStudio((state) => state.brush);
+  const count = useStudio((state) => Object.keys(state.live?.weights ?? {}).length);
+  const one = (factor: number | null, name: string, icon: ReactNode, tone: string) => (
+    <button
+      type="button"
+      className="button icon"
+      aria-pressed={tool === "weigh" && brush === factor}
+      onClick={() => store.setState({ tool: "weigh", brush: factor })}
+    >
+      <span className={`brush ${tone}`}>{icon}</span> {name}
+    </button>
+  );
+  return (
+    <fieldset className="brushes">
+      <legend>Brush cells</legend>
+      {one(GROW, "Grow here", <Sprout />, "grow")}
+      {one(0, "Keep out", <X />, "keep-out")}
+      {one(null, "Erase", <Eraser />, "")}
+      {count > 0 && (
+        <p className="explain">
+          {count.toLocaleString("en")} brushed; what descends from them inherits it, in runs too.{" "}
+          <button
+            type="button"
+            className="link"
+            onClick={() => ask({ type: "weigh_cells", cells: [], factor: null })}
+          >
+            Erase all
+          </button>
+        </p>
+      )}
+    </fieldset>
+  );
+}
+
+/** Over the net, while it evolves. */
+export function LiveBanner() {
+  const live = useStudio((state) => state.live);
+  if (!live || live.status === "none") return null;
+  const last = live.points.at(-1);
+  return (
+    <div className="looking live" role="status">
+      <span>
+        <b>
+          <i className={live.status === "running" ? "pulse" : "pulse still"} />
+          Evolving live, generation {live.generation.toLocaleString("en")}
+        </b>
+        {live.status === "failed"
+          ? live.reason
+          : `${rateOf(live)} · ${(last?.springs ?? 0).toLocaleString("en")} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
+      </span>
+      <button type="button" className="button icon primary" onClick={() => steerLive("keep")}>
+        <Check /> Keep
+      </button>
+      <button type="button" className="button" onClick={() => steerLive("discard")}>
+        Discard
+      </button>
+    </div>
+  );
+}
+
+function rateOf(live: LiveState): string {
+  return live.status === "running" ? `${live.rate.toFixed(0)} generations a second` : live.status;
+}
+
+function rowsOf({ points }: LiveState): GenerationRow[] {
+  const unknown = { suf: null, winner: null, least: null, low: null, median: null, high: null };
+  return points.map((point) => ({ ...unknown, ...point, changed: false }));
+}
