@@ -12,6 +12,7 @@ from ..design import Design
 from ..errors import DesignError, InputError
 from ..evolution import seek
 from .changes import Action, ForestChange, ValueChange, apply, value_at, values_of
+from .grafts import whole_orbit
 from .messages import EditCells, EditSpring, FixNode, MoveAnchor, SeekStress, SetFramework, SetValue
 
 
@@ -22,7 +23,8 @@ def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Ac
     """
     match request:
         case EditCells():
-            return edit_cells(design, request)
+            action, cells = edit_cells(design, request)
+            return whole_orbit(design, action, cells) if request.orbit else (action, cells)
         case SeekStress():
             return seek_stress(design, request)
         case EditSpring():

@@ -11,31 +11,32 @@ import hashlib
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
+
+from .graft_messages import (
+    AskSymmetry,
+    CopyPatch,
+    DeletePatch,
+    Graft,
+    GraftPlan,
+    ListPatches,
+    Patches,
+    PlanGraft,
+    RenamePatch,
+    SelectCells,
+    SymmetryState,
+)
+from .message_base import Address, Key, Message
 
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
-Key = Annotated[str, Field(max_length=200)]
-Address = Annotated[str, Field(max_length=200)]
-
-
-class _Message(BaseModel):
-    model_config = ConfigDict(
-        strict=True,
-        extra="forbid",
-        frozen=True,
-        allow_inf_nan=False,
-        use_attribute_docstrings=True,
-        # Whoever reads a message finds every field in it.
-        json_schema_serialization_defaults_required=True,
-    )
 
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
 
-class EditCells(_Message):
+class EditCells(Message):
     """Subdivide, switch off, switch on or retype cells."""
 
     type: Literal["edit_cells"] = "edit_cells"
@@ -44,9 +45,11 @@ class EditCells(_Message):
     cells: Annotated[list[Address], Field(min_length=1, max_length=100_000)]
     kind: Annotated[str, Field(max_length=100)] | None = None
     """Cell type of the children, or the new type."""
+    orbit: bool = False
+    """Whether the images under the framework's symmetries are edited too."""
 
 
-class EditSpring(_Message):
+class EditSpring(Message):
     """Cut the spring between two nodes, or add one."""
 
     type: Literal["edit_spring"] = "edit_spring"
@@ -55,7 +58,7 @@ class EditSpring(_Message):
     nodes: Annotated[list[Key], Field(min_length=2, max_length=2)]
 
 
-class MoveAnchor(_Message):
+class MoveAnchor(Message):
     """Hold an anchor somewhere else."""
 
     type: Literal["move_anchor"] = "move_anchor"
@@ -64,7 +67,7 @@ class MoveAnchor(_Message):
     position: Vector
 
 
-class FixNode(_Message):
+class FixNode(Message):
     """Make a base vertex an anchor where it is now, or let an anchor go."""
 
     type: Literal["fix_node"] = "fix_node"
@@ -73,7 +76,7 @@ class FixNode(_Message):
     fixed: bool
 
 
-class SeekStress(_Message):
+class SeekStress(Message):
     """Subdivide the cell of highest inner force, a number of times."""
 
     type: Literal["seek_stress"] = "seek_stress"
@@ -82,7 +85,7 @@ class SeekStress(_Message):
     kind: Annotated[str, Field(max_length=100)]
 
 
-class SetValue(_Message):
+class SetValue(Message):
     """Change a value of the design file."""
 
     type: Literal["set_value"] = "set_value"
@@ -92,7 +95,7 @@ class SetValue(_Message):
     value: Any
 
 
-class SetFramework(_Message):
+class SetFramework(Message):
     """Change the framework; cells that no longer fit start anew."""
 
     type: Literal["set_framework"] = "set_framework"
@@ -100,7 +103,7 @@ class SetFramework(_Message):
     framework: dict[str, Any]
 
 
-class Undo(_Message):
+class Undo(Message):
     """Undo the last action, or redo the one that was undone last."""
 
     type: Literal["undo"] = "undo"
@@ -108,7 +111,7 @@ class Undo(_Message):
     redo: bool
 
 
-class Travel(_Message):
+class Travel(Message):
     """Undo or redo until a number of actions is done."""
 
     type: Literal["travel"] = "travel"
@@ -116,7 +119,7 @@ class Travel(_Message):
     position: Annotated[int, Field(ge=0)]
 
 
-class Save(_Message):
+class Save(Message):
     """Write the design file; a path makes it the document's file."""
 
     type: Literal["save"] = "save"
@@ -126,7 +129,7 @@ class Save(_Message):
     """Whether another file that exists is replaced."""
 
 
-class Move(_Message):
+class Move(Message):
     """Let the net move, stop it, make one step, or put it back to where it was drawn."""
 
     type: Literal["move"] = "move"
@@ -134,7 +137,7 @@ class Move(_Message):
     what: Literal["run", "pause", "step", "reset"]
 
 
-class Evolve(_Message):
+class Evolve(Message):
     """Start a run from the design, with parameters; what is left out has its default."""
 
     type: Literal["evolve"] = "evolve"
@@ -142,7 +145,7 @@ class Evolve(_Message):
     parameters: dict[str, Any]
 
 
-class SteerRun(_Message):
+class SteerRun(Message):
     """Pause a run, let it go on, end it, or change parameters from the next generation on."""
 
     type: Literal["steer_run"] = "steer_run"
@@ -151,7 +154,7 @@ class SteerRun(_Message):
     parameters: dict[str, Any] = {}
 
 
-class Look(_Message):
+class Look(Message):
     """Show a parent or an individual of the run instead of the design, or the design again."""
 
     type: Literal["look"] = "look"
@@ -162,7 +165,7 @@ class Look(_Message):
     """None: the parent that the generation chose."""
 
 
-class Follow(_Message):
+class Follow(Message):
     """Show the parent of the newest generation for as long as the run goes on, or no longer."""
 
     type: Literal["follow"] = "follow"
@@ -170,14 +173,14 @@ class Follow(_Message):
     on: bool
 
 
-class Reinstate(_Message):
+class Reinstate(Message):
     """Make what is looked at the design."""
 
     type: Literal["reinstate"] = "reinstate"
     id: int
 
 
-class Hold(_Message):
+class Hold(Message):
     """Hold a node somewhere for as long as it is dragged."""
 
     type: Literal["hold"] = "hold"
@@ -185,13 +188,13 @@ class Hold(_Message):
     position: Vector
 
 
-class Release(_Message):
+class Release(Message):
     """Let the dragged node go."""
 
     type: Literal["release"] = "release"
 
 
-class Received(_Message):
+class Received(Message):
     """A frame of motion was drawn; the engine may send another."""
 
     type: Literal["received"] = "received"
@@ -214,6 +217,14 @@ Request = Annotated[
     | Look
     | Follow
     | Reinstate
+    | SelectCells
+    | AskSymmetry
+    | ListPatches
+    | CopyPatch
+    | RenamePatch
+    | DeletePatch
+    | PlanGraft
+    | Graft
     | Hold
     | Release
     | Received,
@@ -225,7 +236,7 @@ REQUEST: TypeAdapter[Request] = TypeAdapter(Request)
 # --- events: from the engine to windows -----------------------------------------------------------
 
 
-class Figures(_Message):
+class Figures(Message):
     """Measures of the net at equilibrium."""
 
     springs: int
@@ -242,7 +253,7 @@ class Figures(_Message):
     reason: str
 
 
-class HistoryLine(_Message):
+class HistoryLine(Message):
     """One action of the history."""
 
     label: str
@@ -250,7 +261,7 @@ class HistoryLine(_Message):
     """Actions done once this one is, from 1."""
 
 
-class AnchorState(_Message):
+class AnchorState(Message):
     """An anchor as the design file holds it."""
 
     name: str
@@ -258,21 +269,21 @@ class AnchorState(_Message):
     position: Vector
 
 
-class CellTypeChoice(_Message):
+class CellTypeChoice(Message):
     """A cell type that the method allows."""
 
     word: str
     name: str
 
 
-class Looked(_Message):
+class Looked(Message):
     """A parent or an individual that is shown instead of the design."""
 
     generation: int
     individual: int | None
 
 
-class DocumentState(_Message):
+class DocumentState(Message):
     """The document as it is now."""
 
     type: Literal["document"] = "document"
@@ -303,7 +314,7 @@ class DocumentState(_Message):
     """What is shown instead of the design; figures and net are of that."""
 
 
-class GenerationRow(_Message):
+class GenerationRow(Message):
     """What a generation gave: its parent now, and the force differentials of its individuals."""
 
     generation: int
@@ -322,7 +333,7 @@ class GenerationRow(_Message):
     """Parameters were changed after it."""
 
 
-class RunState(_Message):
+class RunState(Message):
     """The run of the document."""
 
     type: Literal["run"] = "run"
@@ -338,7 +349,7 @@ class RunState(_Message):
     rows: list[GenerationRow]
 
 
-class Welcome(_Message):
+class Welcome(Message):
     """First message to a window."""
 
     type: Literal["welcome"] = "welcome"
@@ -347,7 +358,10 @@ class Welcome(_Message):
     version: str
 
 
-class Reply(_Message):
+Answer = Annotated[SymmetryState | GraftPlan, Field(discriminator="type")]
+
+
+class Reply(Message):
     """Answer to a request."""
 
     type: Literal["reply"] = "reply"
@@ -356,22 +370,26 @@ class Reply(_Message):
     """What is wrong and what to do; None: it was done."""
     cells: list[Address] = []
     """Cells that the action made or changed."""
+    answer: Answer | None = None
+    """What was asked for."""
 
 
-class Problem(_Message):
+class Problem(Message):
     """Something went wrong that no request asked for."""
 
     type: Literal["problem"] = "problem"
     message: str
 
 
-Event = Annotated[DocumentState | RunState | Welcome | Reply | Problem, Field(discriminator="type")]
+Event = Annotated[
+    DocumentState | RunState | Patches | Welcome | Reply | Problem, Field(discriminator="type")
+]
 
 
 # --- headers of binary frames ---------------------------------------------------------------------
 
 
-class ArrayHeader(_Message):
+class ArrayHeader(Message):
     """One array of a frame."""
 
     name: str
@@ -379,7 +397,7 @@ class ArrayHeader(_Message):
     length: int
 
 
-class NetHeader(_Message):
+class NetHeader(Message):
     """A net, as what differs from an earlier one."""
 
     frame: Literal["net"] = "net"
@@ -397,7 +415,7 @@ class NetHeader(_Message):
     arrays: list[ArrayHeader]
 
 
-class MotionHeader(_Message):
+class MotionHeader(Message):
     """Where the net is, and what its springs carry."""
 
     frame: Literal["motion"] = "motion"
@@ -417,7 +435,7 @@ class MotionHeader(_Message):
     arrays: list[ArrayHeader]
 
 
-class TableHeader(_Message):
+class TableHeader(Message):
     """Springs and force differentials of all individuals from a generation on."""
 
     frame: Literal["table"] = "table"
@@ -433,14 +451,14 @@ Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="f
 # --- what is fetched ------------------------------------------------------------------------------
 
 
-class SceneEntry(_Message):
+class SceneEntry(Message):
     """A packaged scene."""
 
     name: str
     description: str
 
 
-class DocumentEntry(_Message):
+class DocumentEntry(Message):
     """A document that was worked on before."""
 
     id: str
@@ -451,32 +469,32 @@ class DocumentEntry(_Message):
     open: bool
 
 
-class Shelf(_Message):
+class Shelf(Message):
     """What can be opened."""
 
     scenes: list[SceneEntry]
     documents: list[DocumentEntry]
 
 
-class Opening(_Message):
+class Opening(Message):
     """Ask for a new document from a scene or a design file."""
 
     source: Annotated[str, Field(min_length=1, max_length=4000)]
 
 
-class Opened(_Message):
+class Opened(Message):
     """The document that was opened."""
 
     id: str
 
 
-class Refusal(_Message):
+class Refusal(Message):
     """Why something that was fetched is refused."""
 
     problem: str
 
 
-class Protocol(_Message):
+class Protocol(Message):
     """All of them, for the generator."""
 
     request: Request

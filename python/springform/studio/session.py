@@ -18,14 +18,26 @@ from ..arrays import Floats
 from ..design import Design, load, save
 from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
-from . import commands, journal
+from ..patch_file import Origin
+from . import commands, grafts, journal
 from .changes import Action, values_of
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
+from .graft_messages import (
+    AskSymmetry,
+    CopyPatch,
+    DeletePatch,
+    Graft,
+    ListPatches,
+    PlanGraft,
+    RenamePatch,
+    SelectCells,
+)
 from .library import file_hash
 from .messages import (
     REQUEST,
     AnchorState,
+    Answer,
     DocumentState,
     Evolve,
     Figures,
@@ -51,6 +63,7 @@ from .messages import (
     protocol,
 )
 from .motion import Motion, State
+from .patches import PatchFolder
 from .telling import cell_types_of, figures_of, motion_frame, picture_of
 
 _FRAMES_ON_THE_WAY = 3
@@ -113,6 +126,7 @@ class Session:
         self._order = asyncio.Lock()
         self._loop = asyncio.get_running_loop()
         self._windows: set[Window] = set()
+        self._patches = PatchFolder(folder.parent / "patches")
         self._figures: dict[int, Figures] = {}
         self._looking: tuple[Looked, Design, Figures] | None = None
         self._following = False
@@ -190,14 +204,14 @@ class Session:
             window.tell(Problem(message=f"not understood: {place}: {first['msg']}"))
             return
         try:
-            cells = await self._do(window, request)
+            cells, answer = await self._do(window, request)
         except SpringformError as error:
             self._answer(window, request, problem=str(error))
         except _core.CoreError as error:
             key, problem = error.args
             self._answer(window, request, problem=f"{key}: {problem}")
         else:
-            self._answer(window, request, cells=cells)
+            self._answer(window, request, cells=cells, answer=answer)
 
     def _answer(self, window: Window, request: Request, **answer: Any) -> None:
         number = getattr(request, "id", None)
@@ -206,7 +220,7 @@ class Session:
         elif "problem" in answer:
             window.tell(Problem(message=answer["problem"]))
 
-    async def _do(self, window: Window, request: Request) -> list[str]:
+    async def _do(self, window: Window, request: Request) -> tuple[list[str], Answer | None]:
         match request:
             case Received():
                 window.on_the_way = max(0, window.on_the_way - 1)
@@ -219,10 +233,16 @@ class Session:
                 self._motion.release(window)
             case Move():
                 self._motion.command(request.what)
+            case SelectCells() | AskSymmetry() | PlanGraft():
+                async with self._order:
+                    return await self._in_thread(lambda: self._found(request))
+            case ListPatches() | CopyPatch() | RenamePatch() | DeletePatch():
+                async with self._order:
+                    await self._file_patch(request)
             case _:
                 async with self._order:
-                    return await self._change(request)
-        return []
+                    return await self._change(request), None
+        return [], None
 
     # --- the document --------------------------------------------------------------------------
 
@@ -249,6 +269,9 @@ class Session:
                 await self._in_thread(lambda: self._save(request))
             case Undo() | Travel():
                 await self._travel(self._goal(request))
+            case Graft():
+                patch = await self._in_thread(lambda: self._patches.load(request.patch))
+                cells = await self.act(lambda: grafts.graft_action(self.design, patch, request))
             case _:
                 cells = await self.act(
                     lambda: commands.action_of(self.design, request, self._now())
@@ -334,6 +357,46 @@ class Session:
             self._journal.do(commands.whole(self.design, held, label))
             self._journal.belong_to(settings.file, now)
         return held.to_file()
+
+    # --- selections and patches ----------------------------------------------------------------
+
+    @property
+    def _shown(self) -> Design:
+        """The design, or what is looked at instead."""
+        return self.design if self._looking is None else self._looking[1]
+
+    def _found(
+        self, request: SelectCells | AskSymmetry | PlanGraft
+    ) -> tuple[list[str], Answer | None]:
+        if isinstance(request, SelectCells):
+            return grafts.selected(self._shown, request), None
+        if isinstance(request, AskSymmetry):
+            return [], grafts.symmetry_state(self.design)
+        self._check_design_is_shown()
+        patch = self._patches.load(request.patch)
+        return [], grafts.planned(self.design, patch, request, self._now(), request.measure)
+
+    async def _file_patch(
+        self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch
+    ) -> None:
+        await self._in_thread(lambda: self._filed(request))
+        listing = await self._in_thread(self._patches.listing)
+        for window in self._windows:
+            window.tell(listing)
+
+    def _filed(self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch) -> None:
+        match request:
+            case CopyPatch():
+                looked = None if self._looking is None else self._looking[0]
+                origin = Origin()
+                if looked is not None:
+                    run, place = str(self._known_run().folder), looked.individual
+                    origin = Origin(run=run, generation=looked.generation, individual=place)
+                self._patches.keep(grafts.lifted(self._shown, request, origin))
+            case RenamePatch():
+                self._patches.rename(request.patch, request.name)
+            case DeletePatch():
+                self._patches.delete(request.patch)
 
     # --- the run -------------------------------------------------------------------------------
 
