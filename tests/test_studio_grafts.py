@@ -55,6 +55,9 @@ def test_words_select_what_they_select_everywhere(server: Server) -> None:
         part = select(design, "part(trunk)")
         assert set(select(design, "row(0)").faces) <= set(part.faces)
         assert len(select(design, "row(0)").faces) > 2
+        # A loop is the same from wherever it is begun.
+        loop = select(design, "loop(40)").faces
+        assert len(loop) > 2
         one = select_words(window, None, cells=["40"])
         more = select_words(window, None, cells=one, grow=1)
         assert select_words(window, None, cells=more, grow=-1) == one
@@ -116,7 +119,7 @@ def test_patches_are_files_that_are_renamed_and_deleted(server: Server, tmp_path
         assert "broken" in window.ask(**renaming | {"patch": "other", "name": "broken"})["problem"]
         assert window.ask(type="delete_patch", patch="other")["problem"] is None
         window.tell(type="list_patches", id=900)
-        while (event := window.receive())["type"] != "patches" or len(event["patches"]) != 1:
+        while (event := window.receive()).get("type") != "patches" or len(event["patches"]) != 1:
             pass
         assert event["patches"][0]["problem"]
 
@@ -154,7 +157,7 @@ def test_the_lock_edits_the_whole_orbit(server: Server, what: str) -> None:
         if what == "off":
             assert window.ask(**divide, orbit=True)["problem"] is None
         cells = ["40.1"] if what == "off" else ["40"]
-        kind = "3" if what == "retype" else "1"
+        kind = "2" if what == "retype" else "1"
         asked = {"type": "edit_cells", "what": what, "cells": cells, "kind": kind, "orbit": True}
         reply = window.ask(**asked)
         assert reply["problem"] is None

@@ -6,8 +6,8 @@
     map(trunk, 0..4, 1..2.5)      cells whose centre lies in a region of the unrolled map
     rings(A7, 2)                  two rings of cells round an anchor, a node (v12), a ring
                                   (trunk.start) or a seam (seam:0, the number of the join)
-    row(12), loop(12)             cells from edge to opposite edge: a row runs round its cylinder
-                                  through sides 1 and 3, a loop along it through sides 0 and 2
+    row(12)                       all cells of a cylinder or sheet at the height of one
+    loop(12)                      cells from edge to opposite edge, through sides 0 and 2 of one
     part(trunk)                   all cells of a cylinder or sheet
     force(3..), force(1..2)       cells by the sum of the forces of their springs [N]
     gene(crown)                   cells of everything that holds a gene by reference
@@ -91,9 +91,10 @@ def vertex_of(design: Design, anchor: str) -> int:
     return vertex
 
 
-def strip_through(mesh: _core.BaseMesh, face: int, side: int) -> list[int]:
-    """Return the faces that a walk through `side` of a face, and back through the opposite one,
-    meets: from edge to opposite edge, until it ends at a border, at an edge with three faces or
+def loop_through(mesh: _core.BaseMesh, face: int) -> list[int]:
+    """Return the faces that a walk through side 2 of a face, and one through side 0, meet.
+
+    It goes from edge to opposite edge until it ends at a border, at an edge with three faces or
     more, or where it has been.
     """
     at_edge: dict[frozenset[int], list[tuple[int, int]]] = {}
@@ -105,7 +106,7 @@ def strip_through(mesh: _core.BaseMesh, face: int, side: int) -> list[int]:
         row[turn]: row[1 - turn] for row in at_edge.values() if len(row) == 2 for turn in (0, 1)
     }
     found = [face]
-    for way in (side, (side + 2) % 4):
+    for way in (2, 0):
         at = face, way
         while at in across:
             number, entered = across[at]
@@ -163,8 +164,8 @@ class _Reader:
             "lattice": self._lattice,
             "map": self._map,
             "rings": self._rings,
-            "row": lambda: self._strip(1),
-            "loop": lambda: self._strip(0),
+            "row": self._row,
+            "loop": self._loop,
             "part": self._whole_part,
             "force": self._force,
             "gene": self._gene,
@@ -202,13 +203,22 @@ class _Reader:
         )
         return found
 
-    def _strip(self, side: int) -> _core.Selection:
+    def _row(self) -> _core.Selection:
+        mesh, face = self._design.mesh, self._face()
+        parts, corners = mesh.map
+        heights = corners[:, 1::2].sum(axis=1)
+        level = (parts == parts[face]) & (heights == heights[face])
+        return _core.Selection(mesh, [str(cell) for cell in np.flatnonzero(level)])
+
+    def _loop(self) -> _core.Selection:
         mesh = self._design.mesh
+        return _core.Selection(mesh, [str(cell) for cell in loop_through(mesh, self._face())])
+
+    def _face(self) -> int:
         face = self._whole("a top-level cell")
-        if face >= len(mesh.faces):
+        if face >= len(self._design.mesh.faces):
             raise self._error(f"there is no top-level cell {face}")
-        cells = [str(cell) for cell in strip_through(mesh, face, side)]
-        return _core.Selection(mesh, cells)
+        return face
 
     def _whole_part(self) -> _core.Selection:
         mesh, part = self._design.mesh, self._part()

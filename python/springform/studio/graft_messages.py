@@ -19,7 +19,7 @@ class SelectCells(Message):
     id: int
     words: Annotated[str, Field(max_length=4000)] | None
     """A selection as files and the command line have it, such as ``rings(A7, 2)``."""
-    cells: Annotated[list[Address], Field(max_length=100_000)] = []
+    cells: Annotated[list[Address], Field(max_length=100_000)] = Field(default_factory=list)
     """Cells to start from, if there are no words."""
     grow: Annotated[int, Field(ge=-100, le=100)] = 0
     """Rings of cells to add to them, or to take away."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -182,7 +183,11 @@ def _grafted(design: Design, patch: Patch, request: PlanGraft | Graft) -> Grafte
         )
     around = [frames_around(design, patch, name, mirror=request.mirror) for name in names]
     frames = [row[request.rotate % len(row)] for row in around]
-    return graft(design, patch, at=frames, orbit=request.orbit and request.anchor is not None)
+    orbit = request.orbit and request.anchor is not None
+    grafted = graft(design, patch, at=frames, orbit=orbit)
+    anchors = dict(zip(frames, names, strict=True))
+    placed = tuple(replace(one, anchor=anchors.get(one.frame)) for one in grafted.placed)
+    return replace(grafted, placed=placed)
 
 
 def frames_around(design: Design, patch: Patch, anchor: str, *, mirror: bool) -> list[Frame]:

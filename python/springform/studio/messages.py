@@ -151,7 +151,7 @@ class SteerRun(Message):
     type: Literal["steer_run"] = "steer_run"
     id: int
     what: Literal["pause", "continue", "stop", "change"]
-    parameters: dict[str, Any] = {}
+    parameters: dict[str, Any] = Field(default_factory=dict)
 
 
 class Look(Message):
@@ -368,7 +368,7 @@ class Reply(Message):
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
-    cells: list[Address] = []
+    cells: list[Address] = Field(default_factory=list)
     """Cells that the action made or changed."""
     answer: Answer | None = None
     """What was asked for."""
