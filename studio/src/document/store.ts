@@ -4,6 +4,7 @@ import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
 import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
+import { grafting } from "./grafting";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
@@ -11,7 +12,19 @@ import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessag
 import { NOTHING, type Selection, stillThere } from "./selection";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "cut" | "add";
+export type ToolId =
+  | "pull"
+  | "subdivide"
+  | "cut"
+  | "add"
+  | "box"
+  | "lasso"
+  | "ring"
+  | "row"
+  | "loop"
+  | "part"
+  | "band"
+  | "graft";
 
 /** How the net is shown. */
 export interface View {
@@ -158,6 +171,12 @@ export async function ask(request: Asking, label = "Working"): Promise<Reply | n
   }
 }
 
+/** Asks the engine for something that changes nothing. Rejects with what it says is wrong. */
+export async function query(request: Asking): Promise<Reply> {
+  if (!connection) throw new Error("no document is open");
+  return connection.ask(request);
+}
+
 /** Tells the engine something that it does not answer. */
 export function tell(request: Telling): void {
   connection?.tell(request);
@@ -186,6 +205,7 @@ function takeEvent(event: Protocol["event"]): void {
   if (event.type === "document") store.setState({ document: event });
   if (event.type === "problem") notify(event.message);
   if (event.type === "run") takeRun(event);
+  if (event.type === "patches") grafting.setState({ patches: event });
 }
 
 const TABLE_EVERY = 500; // ms

@@ -9,6 +9,7 @@ import { commandOfKey, type Dialogs } from "./commands";
 import { DialogsContext, useDialogs } from "./dialogs";
 import { LookingBanner } from "./EvolvePanel";
 import { Gallery } from "./Gallery";
+import { LockState, OutlineOverlay } from "./GraftPanel";
 import { Inspector } from "./Inspector";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { StartPage } from "./StartPage";
@@ -69,6 +70,8 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
       <ToolRail />
       <ViewportPane onStage={onStage}>
         <ToolHelp />
+        <LockState />
+        <OutlineOverlay />
         <LookingBanner />
         <LineState />
       </ViewportPane>

@@ -1,5 +1,17 @@
 // The tools at the left edge.
-import { Brush, Hand, Scissors, Waypoints } from "lucide-react";
+import {
+  Brush,
+  CircleDashed,
+  Cylinder,
+  Gauge,
+  Hand,
+  LassoSelect,
+  MoveVertical,
+  Rows3,
+  Scissors,
+  SquareDashed,
+  Waypoints,
+} from "lucide-react";
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
@@ -19,7 +31,47 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
     icon: <Waypoints />,
     help: "Click one node, then another, to tie a spring between them.",
   },
+  {
+    id: "box",
+    icon: <SquareDashed />,
+    help: "Drag a box over cells to select them; Shift adds, Ctrl takes those behind too.",
+  },
+  {
+    id: "lasso",
+    icon: <LassoSelect />,
+    help: "Draw round cells to select them; Shift adds, Ctrl takes those behind too.",
+  },
+  {
+    id: "ring",
+    icon: <CircleDashed />,
+    help: "Click an anchor or a node to select the cells round it; each further click adds a ring.",
+  },
+  {
+    id: "row",
+    icon: <Rows3 />,
+    help: "Click a cell to select all of its cylinder at its height; Shift adds.",
+  },
+  {
+    id: "loop",
+    icon: <MoveVertical />,
+    help: "Click a cell to select those before and behind it, from edge to edge; Shift adds.",
+  },
+  {
+    id: "part",
+    icon: <Cylinder />,
+    help: "Click a cell to select its whole cylinder; Shift adds.",
+  },
+  {
+    id: "band",
+    icon: <Gauge />,
+    help: "Click a cell to select all that carry the same force, to a tenth; Shift adds.",
+  },
 ];
+
+const HELP: Record<string, string> = {
+  graft:
+    "The ghost follows the pointer over cells and anchors; a click keeps it. R rotates, M mirrors, Enter applies.",
+};
 
 export function ToolRail() {
   const tool = useStudio((state) => state.tool);
@@ -47,5 +99,5 @@ export function ToolRail() {
 /** What the tool in the hand does, in a line over the net. */
 export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
-  return <p className="tool-help">{TOOLS.find(({ id }) => id === tool)!.help}</p>;
+  return <p className="tool-help">{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</p>;
 }

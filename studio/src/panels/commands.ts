@@ -1,9 +1,19 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
+import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
+import { GRAFT_COMMANDS } from "./graftCommands";
 
-export type Group = "Net" | "Cells" | "Springs and nodes" | "Tools" | "View" | "Document";
+export type Group =
+  | "Net"
+  | "Cells"
+  | "Selecting"
+  | "Grafting"
+  | "Springs and nodes"
+  | "Tools"
+  | "View"
+  | "Document";
 
 export interface Command {
   id: string;
@@ -11,6 +21,8 @@ export interface Command {
   group: Group;
   /** Keys as `KeyboardEvent.key` names them, `Ctrl+` and `Shift+` before them. */
   keys?: string;
+  /** Whether its keys mean it now; always if left out. */
+  when?(state: State): boolean;
   /** Whether it can be done now; if not, why. */
   refused?(state: State): string | null;
   run(stage: { viewport: Viewport | null; dialogs: Dialogs }): void;
@@ -40,13 +52,19 @@ function onAnchor({ net, selection }: State): boolean {
 
 function editCells(what: "subdivide" | "off" | "on" | "turn", label: string): () => void {
   return () => {
-    ask({ type: "edit_cells", what, cells: cells(), kind: null }, label);
+    ask(
+      { type: "edit_cells", what, cells: cells(), kind: null, orbit: grafting.getState().lock },
+      label,
+    );
   };
 }
 
 /** Gives the selected cells a type. */
 export function retype(kind: string): void {
-  ask({ type: "edit_cells", what: "retype", cells: cells(), kind }, "Changing the type");
+  ask(
+    { type: "edit_cells", what: "retype", cells: cells(), kind, orbit: grafting.getState().lock },
+    "Changing the type",
+  );
 }
 
 export function undo(redo: boolean): void {
@@ -66,6 +84,7 @@ export function seek(steps: number): void {
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
 export const COMMANDS: Command[] = [
+  ...GRAFT_COMMANDS,
   {
     id: "run",
     label: "Run or pause form-finding",
@@ -294,7 +313,10 @@ export const COMMANDS: Command[] = [
     label: "Select nothing",
     group: "Tools",
     keys: "Escape",
-    run: () => select(NOTHING),
+    run: () => {
+      select(NOTHING);
+      if (store.getState().tool !== "pull") store.setState({ tool: "pull" });
+    },
   },
 ];
 
@@ -314,7 +336,8 @@ export function commandOfKey(event: KeyboardEvent): Command | undefined {
   const shift = event.shiftKey && (letter || name.length > 1) ? "Shift+" : "";
   const pressed = `${control}${shift}${name}`;
   const same = pressed === "Backspace" ? "Delete" : pressed === "Ctrl+Y" ? "Ctrl+Shift+Z" : pressed;
-  return COMMANDS.find(({ keys }) => keys === same);
+  const state = store.getState();
+  return COMMANDS.find(({ keys, when }) => keys === same && (when?.(state) ?? true));
 }
 
 async function exportPicture(viewport: Viewport): Promise<void> {

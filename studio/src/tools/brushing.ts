@@ -1,4 +1,5 @@
 // Brush: every cell that the pointer passes is subdivided when the button comes up.
+import { grafting } from "../document/grafting";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
@@ -43,6 +44,9 @@ export class Brushing implements Tool {
     const cells = net ? [...viewport.brushed].map((row) => net.addresses[row]) : [];
     this.cancel(viewport);
     if (!cells.length) return;
-    ask({ type: "edit_cells", what: "subdivide", cells, kind: null }, "Subdividing");
+    ask(
+      { type: "edit_cells", what: "subdivide", cells, kind: null, orbit: grafting.getState().lock },
+      "Subdividing",
+    );
   }
 }

@@ -1,6 +1,7 @@
 // The viewport: what the document holds and how it is to be seen, drawn on a canvas when either changes.
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
+import { grafting } from "../document/grafting";
 import { positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
 import { type Colour, kindColour } from "../document/palettes";
@@ -19,6 +20,8 @@ const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22,
 const ANCHOR: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [30, 36, 45] };
 const ARROW: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
 const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+
+const GHOST: Record<State["theme"], Colour> = { dark: [86, 214, 170], light: [10, 122, 84] };
 
 /** Widths of springs [px]. */
 const WIDTH = 1.6;
@@ -54,6 +57,7 @@ export class Viewport {
   private readonly hairlines = new Hairlines();
   private readonly marked = new Ribbons({ lift: 0.0003, order: 2, haze: 0 });
   private readonly arrows = new Ribbons({ lift: 0.0002, order: 2, haze: 0.2 });
+  private readonly ghost = new Ribbons({ lift: 0.0006, order: 3, haze: 0 });
   private readonly skin = new Skin(0.16);
   private readonly markedSkin = new Skin(0.34);
   private readonly discs = new Discs();
@@ -81,6 +85,7 @@ export class Viewport {
     this.scene.fog = new THREE.Fog(0, 0, 1);
     const { mesh } = this.ribbons;
     this.scene.add(mesh, this.hairlines.lines, this.marked.mesh, this.arrows.mesh);
+    this.scene.add(this.ghost.mesh);
     this.scene.add(this.skin.mesh, this.markedSkin.mesh, this.discs.points);
     this.eye = new Eye(canvas, () => {
       this.lastMove = performance.now();
@@ -89,7 +94,13 @@ export class Viewport {
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(canvas.parentElement!);
     this.resize();
-    this.stop = store.subscribe((state, before) => this.follow(state, before));
+    const stops = [
+      store.subscribe((state, before) => this.follow(state, before)),
+      grafting.subscribe(({ plan }, before) => plan !== before.plan && this.redraw(true)),
+    ];
+    this.stop = () => {
+      for (const stop of stops) stop();
+    };
     this.follow(store.getState(), null);
   }
 
@@ -153,6 +164,7 @@ export class Viewport {
       this.hairlines,
       this.marked,
       this.arrows,
+      this.ghost,
       this.skin,
       this.markedSkin,
       this.discs,
@@ -216,7 +228,7 @@ export class Viewport {
     fog.far = haze.y + 0.6 * (haze.y - haze.x);
     const scale = this.renderer.getPixelRatio();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    for (const ribbons of [this.ribbons, this.marked, this.arrows])
+    for (const ribbons of [this.ribbons, this.marked, this.arrows, this.ghost])
       ribbons.fit(size.x, size.y, scale, this.ground, haze);
     this.discs.fit(scale, this.ground);
     const current = net && motion && motion.header.revision === net.revision;
@@ -243,6 +255,7 @@ export class Viewport {
     this.hairlines.set(count, ends, this.colouring.colours);
     this.updateMarks(state, net, ends);
     this.updateSkin(state, net, motion);
+    this.updateGhost(theme);
     this.discs.set(discsOf(state, net, motion));
   }
 
@@ -274,6 +287,19 @@ export class Viewport {
       widths[chosen.length] = 2.4;
     }
     this.marked.set(count, places, colours, widths);
+  }
+
+  /** Draws the cells that the patch in the hand would become, over the net. */
+  private updateGhost(theme: State["theme"]): void {
+    const plan = grafting.getState().plan;
+    const springs = plan?.springs ?? [];
+    const places = new Float32Array([...springs, ...(plan?.outline ?? [])]);
+    const count = places.length / 6;
+    const colours = new Uint8Array(3 * count);
+    const widths = new Float32Array(count).fill(1.8);
+    for (let line = 0; line < count; line++) colours.set(GHOST[theme], 3 * line);
+    widths.fill(3.2, springs.length / 6);
+    this.ghost.set(count, places, colours, widths);
   }
 
   private updateArrows({ view, theme }: State, motion: NonNullable<State["motion"]>): void {
