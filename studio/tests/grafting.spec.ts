@@ -71,7 +71,7 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   await page.getByRole("tab", { name: "Graft", exact: true }).click();
   const bare = await greenPixels(page);
   await page.getByRole("button", { name: "Graft crown" }).click();
-  await page.getByLabel("To", { exact: true }).selectOption("anchors");
+  await page.getByRole("combobox", { name: "To", exact: true }).selectOption("anchors");
   await expect(page.locator(".comparison")).toBeVisible();
   const first = await row(page, "Springs").last().textContent();
   await page.locator("main.viewport canvas").focus();

@@ -118,7 +118,7 @@ test("grafting", async ({ page, open }) => {
   await page.mouse.move(other.x + 2, other.y);
   await page.mouse.move(other.x, other.y);
   await take(page, "ghost");
-  await page.getByLabel("To", { exact: true }).selectOption("anchors");
+  await page.getByRole("combobox", { name: "To", exact: true }).selectOption("anchors");
   await page.locator(".comparison").waitFor();
   await take(page, "graft-all");
   await page.getByRole("button", { name: "Apply" }).click();

@@ -122,7 +122,7 @@ def whole_orbit(design: Design, action: Action, cells: list[str]) -> tuple[Actio
     Raises `InputError`: the images can't be edited alike.
     """
     changes = [
-        change.model_copy(update={"edits": edit_orbit(design, change.edits)})
+        change.model_copy(update={"edits": _images(design, change.edits)})
         if isinstance(change, ForestChange)
         else change
         for change in action.changes
@@ -131,6 +131,19 @@ def whole_orbit(design: Design, action: Action, cells: list[str]) -> tuple[Actio
     images = group.edits(design.setting, [f"{cell} on" for cell in cells]) if cells else []
     label = f"{action.label}, symmetrically"
     return Action(label=label, changes=changes), [line.split(" ")[0] for line in images]
+
+
+def _images(design: Design, edits: list[str]) -> list[str]:
+    """Return edits with their images; cells that have the same type by another turn are taken."""
+    found = []
+    for line in edit_orbit(design, edits):
+        words = line.split(" ")
+        if words[1] == "retype":
+            content = design.setting.cell(design.forest, words[0])[0]
+            if content.partition("@")[0] == words[2].partition("@")[0]:
+                words[2] = content
+        found.append(" ".join(words))
+    return found
 
 
 def symmetry_state(design: Design) -> SymmetryState:
