@@ -40,7 +40,7 @@ ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   ifneq ($(shell $(or $(BASE_PYTHON),false) -c 'import sys; print(sys.version_info >= (3, 11))' 2> /dev/null),True)
     $(error springFORM needs Python 3.11 or newer, $(PYTHON) is not: name another with PYTHON=python3.12)
   endif
-  ifneq ($(filter setup test lint format messages screenshots,$(MAKECMDGOALS)),)
+  ifneq ($(filter setup test lint format messages screenshots feel,$(MAKECMDGOALS)),)
     ifneq ($(shell node -p 'process.versions.node.split(".")[0] >= 20' 2> /dev/null),true)
       $(error the studio needs Node.js 20 or newer with npm: install them so that `node` is found, then try again)
     endif
@@ -146,6 +146,10 @@ pictures: demo # make the pictures of the README
 .PHONY: screenshots
 screenshots: chromium $(PACKAGE) $(STUDIO_PAGE) # take the pictures of the studio
 	@cd studio && npx playwright test --project pictures
+
+.PHONY: feel
+feel: chromium $(PACKAGE) $(STUDIO_PAGE) # time picking and pulling in a window of the studio
+	@cd studio && npx playwright test --project measures
 
 .PHONY: lock
 lock: # renew Cargo.lock and requirements.lock

@@ -18,6 +18,9 @@ print(f"and by {others.max():.3f} N for each N/m of the spring that helps it mos
 
 free = sf.equalise(design, bounds=(0.25, 4))
 print(f"between 1/4 and 4: force differential {free.before:.2f}, then {free.after:.2f}")
+assert free.design is not None
+again = free.design.measure(free.design.solve()).force_differential
+print(f"the design that holds these factors, solved anew: {again:.2f}")
 laid = sf.equalise(design, values=(1, 2, 4))
 counts = {factor: int((laid.factors == factor).sum()) for factor in (1, 2, 4)}
 print(f"cords by number of strands: {counts}")

@@ -14,8 +14,11 @@ export default defineConfig({
     { name: "studio", testMatch: "*.spec.ts" },
     // Not a test: `make screenshots` takes the pictures of the documentation.
     { name: "pictures", testMatch: "pictures.ts" },
+    // Not tests either: `make feel` prints how long picking and pulling take.
+    { name: "measures", testMatch: "measures.ts" },
   ],
   use: {
+    actionTimeout: 20_000,
     viewport: { width: 1280, height: 800 },
     colorScheme: "dark",
     launchOptions: {

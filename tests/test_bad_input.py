@@ -129,6 +129,11 @@ def with_group(lines: str) -> str:
     return f"{NET}\n[[springs.groups]]\n{lines}\n"
 
 
+def with_factors(lines: str) -> str:
+    """The net with a table of factors as its last one."""
+    return f"{NET}\n[springs.stiffness_factors]\n{lines}\n"
+
+
 def with_table(name: str, lines: str) -> str:
     return f"{NET}\n[[{name}]]\n{lines}\n"
 
@@ -154,10 +159,14 @@ DESIGNS: dict[str, tuple[str, list[str]]] = {
     "a group of no pairs": (with_group("stiffness = 2.0\npairs = []"), ["springs.groups[0].pairs: is empty"]),
     "a pair of one node": (with_group('stiffness = 2.0\npairs = ["v1"]'), ["springs.groups[0].pairs[0]", "does not name two nodes", f"net.toml:{LAST + 1}:"]),
     "a pair of lost nodes": (with_group('stiffness = 2.0\npairs = ["v1 v999"]'), ["springs.groups[0].pairs[0]", "v999", f"net.toml:{LAST + 1}:"]),
+    "a factor of one node": (with_factors('"v1" = 2.0'), ["springs.stiffness_factors.v1", "does not name two nodes", f"net.toml:{LAST}:"]),
+    "a factor of lost nodes": (with_factors('"v1 v999" = 2.0'), ["springs.stiffness_factors.v1 v999", "v999", f"net.toml:{LAST}:"]),
+    "a factor of 0": (with_factors('"v0 v8" = 0.0'), ["springs.stiffness_factors.v0 v8: must be greater than 0", f"net.toml:{LAST}:"]),
+    "a factor twice": (with_factors('"v0 v8" = 2.0\n"v8 v0" = 3.0'), ["springs.stiffness_factors.v8 v0", "same spring as v0 v8", f"net.toml:{LAST + 1}:"]),
     "two laws": (with_group("stiffness = 2.0\naxial_stiffness = 3.0"), ["springs.groups[0].axial_stiffness: cannot stand beside stiffness", f"net.toml:{LAST + 1}:"]),
     "two rest lengths": (with_group("rest_length = 2.0\nprestress = 3.0"), ["springs.groups[0].prestress: cannot stand beside rest_length"]),
     "a rest length of a force": (with_group("force = 2.0\nrest_ratio = 0.5"), ["springs.groups[0].rest_ratio: means nothing beside force"]),
-    "a prestressed curve": (with_group("prestress = 2.0\ncurve = [[0, 0], [1, 1]]"), ["springs.groups[0].prestress: cannot stand beside a curve"]),
+    "a curve prestressed beyond reach": (with_group("prestress = -2.0\ncurve = [[0, 0], [1, 1]]"), ["springs.groups[0]", "without force"]),
     "a curve that falls": (with_group("curve = [[0, 0], [0.1, 2], [0.2, 1]]"), ["springs.groups[0].curve: point 2 has a force below", f"net.toml:{LAST}:"]),
     "a curve of numbers": (with_group("curve = [0, 1]"), ["springs.groups[0].curve[0]: must be a point"]),
     "no axial stiffness": (with_group("axial_stiffness = 0.0"), ["springs.groups[0].axial_stiffness: must be greater than 0"]),

@@ -221,8 +221,8 @@ def test_one_json_object_and_one_file_a_case(folder: Path) -> None:
         assert {row["case"] for row in rows} == {case}
 
 
-@pytest.mark.parametrize("case", ["individual", "paper-a", "growth", "threads"])
-def test_cases_of_individuals_run(case: str) -> None:
+@pytest.mark.parametrize("case", ["individual", "paper-a", "growth", "threads", "studio"])
+def test_cases_run(case: str) -> None:
     report = in_process("bench", case, "--quick", "--json").report
     rows = report["cases"][case]
     assert rows

@@ -1,4 +1,4 @@
-"""Equalising: the evolved net's differential is halved, only allowed factors are used."""
+"""Equalising: the evolved net's differential is halved, and a file holds the tuned stiffness."""
 
 import csv
 from pathlib import Path
@@ -65,6 +65,67 @@ def test_a_few_values_are_the_only_ones(evolved: Path) -> None:
     assert differential["after"] <= differential["before"] / 1.5
 
 
+@pytest.mark.parametrize("scene", ["three-cylinders", "three-cylinders-elastic", "hung-in-rods"])
+@pytest.mark.parametrize("ending", ["toml", "json"])
+def test_the_tuned_design_gives_the_differential_again(
+    scene: str, ending: str, tmp_path: Path
+) -> None:
+    path = tmp_path / f"even.{ending}"
+    report = in_process("equalise", scene, "--out", path, "--json").report
+    solved = in_process("solve", path, "--json").report
+    before, after = report["force_differential"].values()
+    assert after < before
+    assert report["springs"] == solved["springs"] == sf.load(scene).cords.stop
+    assert solved["force_differential"] == pytest.approx(after, rel=1e-6)
+    # It is a design like others: canonical, and tuned further from where it is.
+    again = tmp_path / f"again.{ending}"
+    sf.save(sf.load(path), again)
+    assert again.read_bytes() == path.read_bytes()
+    further = sf.equalise(sf.load(path), bounds=(0.9, 1.1))
+    assert further.before == pytest.approx(after, rel=1e-6)
+    assert further.design is not None
+    tuned = further.design.solve().forces[further.cords]
+    assert tuned.max() / tuned.min() == pytest.approx(further.after, rel=1e-6)
+
+
+def test_links_of_rods_are_neither_tuned_nor_counted() -> None:
+    design = sf.load("hung-in-rods")
+    tuned = sf.equalise(design)
+    links = slice(design.cords.stop, None)
+    assert len(tuned.factors[links]) > 0
+    assert (tuned.factors[links] == 1).all()
+    forces = tuned.equilibrium.forces[design.cords]
+    assert forces.max() / forces.min() == pytest.approx(tuned.after)
+    bare = sf.equalise(
+        sf.Network(
+            [[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0], [1, -1, 0]],
+            [[0, 1], [1, 2], [1, 3], [1, 4]],
+            [0, 2, 3, 4],
+            axial_stiffness=[1e3, 1e3, 10, 10],
+            prestress=[0, 0, 1, 2],
+            rods=[sf.Rod([0, 1, 2], bending_stiffness=1.0)],
+        )
+    )
+    assert bare.cords.tolist() == [2, 3]
+    assert (bare.factors[:2] == 1).all()
+    assert bare.after < 1.01 < bare.before
+
+
+def test_a_factor_sleeps_while_its_spring_is_gone() -> None:
+    tuned = sf.equalise(sf.load("three-cylinders"), iterations=50).design
+    assert tuned is not None
+    stiffness = tuned.network().stiffness
+    split = "0 subdivide 1 1 1 1"
+    changed = tuned.edited([split])
+    keys, springs = changed.nodes, changed.network().springs.tolist()
+    factors = tuned.file.springs.stiffness_factors
+    names = [f"{keys[a]} {keys[b]}" for a, b in springs]
+    assert changed.network().stiffness.tolist() == [factors.get(name, 1.0) for name in names]
+    assert set(factors) - set(names)
+    back = changed.edited(changed.inverse([split]))
+    assert back.network().stiffness.tobytes() == stiffness.tobytes()
+
+
 @pytest.mark.parametrize("scene", ["one-cylinder", "three-cylinders"])
 def test_equalising_gives_the_same_bits_again(scene: str) -> None:
     first, second = (sf.equalise(sf.load(scene), bounds=(0.5, 2)) for _ in range(2))
@@ -105,7 +166,7 @@ def test_an_interrupt_comes_through() -> None:
         (["--values", "1"], ["--values", "two different"]),
         (["--values", ""], ["--values"]),
         (["--values", "1,2", "--bounds", "1,2"], ["--values", "--bounds"]),
-        (["--out", "x.pdf"], ["x.pdf", ".csv"]),
+        (["--out", "x.pdf"], ["x.pdf", ".toml", ".csv"]),
         (["--out", "missing/x.csv"], ["missing"]),
     ],
 )

@@ -147,6 +147,7 @@ RIGGED: Data = {
     "forest": {"type": 1, "cells": {"0": "1(1 6 1 1)"}},
     "springs": {
         "stiffness": 2.0,
+        "stiffness_factors": {"v0 v8": 0.5, "v9 v0": 4.0, "e3:1/2 v2": 3.0},
         "groups": [
             {"axial_stiffness": 9.8, "rest_ratio": [0.7, 0.8], "diameter": 0.0025},
             {"parts": ["trunk"], "types": [1, "6"], "levels": [1], "force_density": 3.0},

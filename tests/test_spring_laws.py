@@ -18,10 +18,13 @@ exact = settings(max_examples=200, deadline=None, derandomize=True, database=Non
 
 
 def pchip(points: np.ndarray, strain: np.ndarray) -> np.ndarray:
-    """SciPy's monotone cubic, continued straight."""
+    """SciPy's monotone cubic, continued straight, in the end no less steep than the last chord."""
     curve = PchipInterpolator(points[:, 0], points[:, 1])
     inside = np.clip(strain, points[0, 0], points[-1, 0])
-    return curve(inside) + curve.derivative()(inside) * (strain - inside)
+    [run, rise] = points[-1] - points[-2]
+    slope = curve.derivative()(inside)
+    slope = np.where(strain > points[-1, 0], np.maximum(slope, rise / run), slope)
+    return curve(inside) + slope * (strain - inside)
 
 
 @exact

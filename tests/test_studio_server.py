@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import random
 import signal
 import socket
 import threading
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from websockets.sync.client import ClientConnection, connect
 
 from helpers import assert_refused, springform
+from springform.design import load
 from springform.studio import journal
 from studio_client import Server, serving
 
@@ -27,7 +30,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         yield running
 
 
-@pytest.mark.parametrize("path", ["/", "/api/shelf", "/api/documents/{document}"])
+@pytest.mark.parametrize(
+    "path", ["/", "/api/shelf", "/api/documents/{document}", "/api/documents/{document}/export/obj"]
+)
 def test_nobody_comes_in_without_the_token(server: Server, path: str) -> None:
     path = path.format(document=server.document)
     assert server.get(server.path(path))[0] in (200, 404)  # 404: the page is not built
@@ -84,6 +89,40 @@ def test_what_can_not_be_opened_says_why(server: Server) -> None:
     assert server.get(server.path("/api/documents/none"))[0] == 422
     assert server.get(server.path("/api/documents"), method="POST", body="[]")[0] == 422
     assert server.get(server.path("/api/scenes/none/picture"))[0] == 422
+    status, answer = server.get(server.path(f"/api/documents/{server.document}/export/xyz"))
+    assert status == 422
+    assert "toml" in json.loads(answer)["problem"]
+
+
+def test_a_model_is_what_the_command_line_writes(server: Server, tmp_path: Path) -> None:
+    def exported(name: str) -> bytes:
+        status, body = server.get(server.path(f"/api/documents/{server.document}/export/{name}"))
+        assert status == 200
+        assert isinstance(body, bytes)
+        return body
+
+    file = tmp_path / "net.toml"
+    file.write_bytes(exported("toml"))
+    assert springform("solve", file, "--out", tmp_path / "results").code == 0
+    with zipfile.ZipFile(io.BytesIO(exported("tables"))) as tables:
+        for name in tables.namelist():
+            assert tables.read(name) == (tmp_path / "results" / name).read_bytes(), name
+    assert exported("obj") == (tmp_path / "results" / "net.obj").read_bytes()
+    (tmp_path / "net.json").write_bytes(exported("json"))
+    assert load(tmp_path / "net.json").to_file() == load(file).to_file()
+
+
+def test_a_preview_changes_nothing_and_tells_only_who_asked(server: Server) -> None:
+    with server.window() as first, server.window() as second:
+        first.settle()
+        second.settle()
+        before = server.state()
+        action = {"type": "set_density", "id": 1, "part": None, "level": 2}
+        reply = first.ask(type="preview", action=action)
+        assert reply["problem"] is None
+        assert reply["preview"]["springs_added"] > 0
+        assert server.state() == before
+        assert second.ask(type="move", what="run")["preview"] is None
 
 
 def test_a_window_sees_what_another_does(server: Server) -> None:
@@ -124,6 +163,20 @@ def test_an_action_that_does_not_fit_is_answered_and_changes_nothing(server: Ser
             {"type": "travel", "position": 10**6},
             {"type": "save", "path": None, "replace": False},
             {"type": "seek_stress", "steps": 1, "kind": "nothing"},
+            {"type": "set_springs", "choice": {}, "says": {}},
+            {"type": "set_springs", "choice": {}, "says": {"stiffness": -1}},
+            {"type": "set_springs", "choice": {}, "says": {"stiffness": 1, "force": 2}},
+            {"type": "set_springs", "choice": {"parts": ["nobody"]}, "says": {"force": 2}},
+            {"type": "set_springs", "choice": {"pairs": ["v0"]}, "says": {"force": 2}},
+            {"type": "drop_springs", "group": 10**6},
+            {"type": "set_density", "part": "nobody", "level": 1},
+            {"type": "set_density", "part": None, "level": 0},
+            {"type": "fix_node", "node": "v0", "fixed": True, "line": [0, 0, 0]},
+            {"type": "fix_node", "node": "v0", "fixed": True, "holds": "x", "plane": [0, 0, 1]},
+            {
+                "type": "preview",
+                "action": {"type": "set_density", "id": 1, "part": "no", "level": 1},
+            },
         ):
             assert window.ask(**request)["problem"], request
         window.tell(type="hold", node="nowhere", position=[0, 0, 0])
@@ -180,6 +233,15 @@ def test_ten_thousand_malformed_messages_change_nothing(server: Server) -> None:
         {"type": "delete_patch", "id": 1, "patch": "nobody"},
         {"type": "plan_graft", "id": 1, "measure": True, **_PLACE},
         {"type": "graft", "id": 1, **_PLACE},
+        {"type": "set_springs", "id": 1, "choice": {"pairs": ["x y"]}, "says": {"force": 0}},
+        {"type": "drop_springs", "id": 1, "group": 10**6},
+        {"type": "set_density", "id": 1, "part": "nobody", "level": 0},
+        {"type": "fix_node", "id": 1, "node": "x", "fixed": True, "holds": "xy"},
+        {
+            "type": "preview",
+            "id": 1,
+            "action": {"type": "set_springs", "id": 1, "choice": {}, "says": {"no": 1}},
+        },
     ]
     before = server.state()
     answers = 0
@@ -251,6 +313,9 @@ def test_a_kill_loses_at_most_the_action_in_flight(part: int, tmp_path: Path) ->
 
 
 def _next_action(chance: random.Random, number: int) -> dict[str, Any]:
+    if number % 3 == 0:
+        says = {"stiffness": 1.0 + number}
+        return {"type": "set_springs", "choice": {"parts": ["tube"]}, "says": says}
     position = [chance.uniform(1, 3), chance.uniform(1, 3), float(number)]
     return {"type": "move_anchor", "anchor": "A1", "position": position}
 

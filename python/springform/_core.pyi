@@ -379,6 +379,9 @@ class ForceStrainCurve:
     def axial_stiffness(self) -> float:
         """Force over strain at the last point [N]."""
 
+    def strain(self, forces: _Floats) -> _Floats:
+        """Return the least strains at which the curve has forces [N]."""
+
     def force(self, strains: _Floats) -> _Floats:
         """Return the force at strains, (s,) [N]."""
 
@@ -428,9 +431,17 @@ class Equalisation:
     """Stiffness factors of a bare network on their way to even forces."""
 
     def __new__(
-        cls, network: _NetworkArrays, bounds: list[float], values: list[float], tolerance: float
+        cls,
+        network: _NetworkArrays,
+        tuned: list[int],
+        bounds: list[float],
+        values: list[float],
+        tolerance: float,
     ) -> Equalisation:
-        """Take two bounds on the factors, or, where there are any, the only values allowed."""
+        """Take two bounds on the factors, or, where there are any, the only values allowed.
+
+        `tuned` are the springs whose stiffness is tuned and whose forces count, ascending.
+        """
 
     def advance(self) -> bool:
         """Make one step; return False once there is none left to make."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,7 +13,8 @@ _WIDTH = 88  # of a list of texts on one line
 def toml_text(table: dict[str, Any]) -> str:
     """Return `table` as TOML: tables apart by a blank line, tables in arrays written inline.
 
-    Keys must be bare keys; values finite numbers, texts, booleans, and lists and tables of them.
+    Keys of tables in arrays must be bare keys; values finite numbers, texts, booleans, and lists
+    and tables of them.
     """
     return "\n".join(_toml_lines(table, ())).lstrip("\n") + "\n"
 
@@ -44,7 +46,7 @@ def _toml_lines(table: dict[str, Any], path: tuple[str, ...]) -> Iterator[str]:
         if isinstance(value, dict) or _is_table_array(value):
             tables[key] = value
         else:
-            yield f"{key} = {_toml_value(value)}"
+            yield f"{_toml_key(key)} = {_toml_value(value)}"
     for key, value in tables.items():
         name = ".".join((*path, key))
         if isinstance(value, list):
@@ -59,6 +61,10 @@ def _toml_lines(table: dict[str, Any], path: tuple[str, ...]) -> Iterator[str]:
             ):
                 yield f"\n[{name}]"
             yield from _toml_lines(value, (*path, key))
+
+
+def _toml_key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _scalar(key)
 
 
 def _toml_value(value: object) -> str:

@@ -10,10 +10,10 @@ from functools import cached_property
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core, design_file, scenes
-from .arrays import Floats
+from .arrays import Floats, numbers
 from .design_schema import (
     Anchor,
     Arc,
@@ -22,7 +22,7 @@ from .design_schema import (
     ForestSection,
     Overrides,
 )
-from .errors import DesignError
+from .errors import DesignError, InputError
 from .files import read_text
 from .key_lines import KeyPath, line_of_key
 from .network import TOLERANCE, Equilibrium, Network, Solver, solve
@@ -37,6 +37,7 @@ class _Sections(NamedTuple):
     """What the core takes of a design file besides the framework and the forest."""
 
     groups: tuple[SpringGroup, ...]
+    stiffness_factors: list[tuple[str, float]]
     rods: tuple[Rod, ...]
     node_loads: tuple[NodeLoad, ...]
     pressures: tuple[Pressure, ...]
@@ -301,6 +302,27 @@ class Design:
         """
         return self._with_section(("springs", "groups"), group)
 
+    def with_stiffness_factors(self, factors: ArrayLike) -> Design:
+        """Return the design with a factor on the stiffness of every cord, (c,) in their order.
+
+        They multiply factors that the design has already and go by the two nodes of a spring, so
+        that one of a spring that edits take away sleeps until it is back. Raises `InputError`:
+        another shape, or not above 0.
+        """
+        values = numbers("factors", factors, (self.cords.stop,))
+        if not (values > 0).all():
+            raise InputError("must be above 0", key="factors")
+        file, keys = self.to_file(), self.nodes
+        held = {tuple(sorted(pair.split())): pair for pair in file.springs.stiffness_factors}
+        said = dict(file.springs.stiffness_factors)
+        springs = self.network().springs[self.cords].tolist()
+        for (a, b), factor in zip(springs, values.tolist(), strict=True):
+            pair = held.get(tuple(sorted((keys[a], keys[b]))), f"{keys[a]} {keys[b]}")
+            said[pair] = said.get(pair, 1.0) * factor
+        changed = {pair: factor for pair, factor in said.items() if factor != 1}
+        springs_section = file.springs.model_copy(update={"stiffness_factors": changed})
+        return Design(file.model_copy(update={"springs": springs_section}), source=self._source)
+
     def with_rod(self, along: str, **rod: Any) -> Design:
         """Return the design with a rod along a boundary, by the keys of `rods`.
 
@@ -431,6 +453,7 @@ class Design:
             file.springs.ring_factor,
             _Sections(
                 file.springs.groups,
+                list(file.springs.stiffness_factors.items()),
                 file.rods,
                 file.loads.nodes,
                 file.loads.pressures,

@@ -18,6 +18,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from .canonical_text import json_text, toml_text
+from .curve_file import read_curve
 from .design_messages import URGENCY, message_of, path_of
 from .design_schema import DesignFile
 from .errors import DesignError
@@ -48,7 +49,10 @@ def load(path: str | os.PathLike[str]) -> DesignFile:
     Raises `DesignError`: see `parse`; also where the file cannot be read.
     """
     format = format_of(path)
-    return parse(read_text(path, DesignError), format, os.fspath(path))
+    text, source = read_text(path, DesignError), os.fspath(path)
+    data = read_data(text, format, source)
+    _read_curves(data, os.path.dirname(source))
+    return from_data(data, source, lambda path: line_of_key(text, path, format))
 
 
 def from_data(
@@ -69,6 +73,17 @@ def from_data(
     path = path_of(first)
     message = message_of(first)
     raise DesignError(message, file=source, key=key_text(path) or None, line=line_of(path))
+
+
+def _read_curves(data: object, folder: str) -> None:
+    """Put the points of CSV files in place of their names: a design holds all that it needs."""
+    springs = data.get("springs") if isinstance(data, dict) else None
+    groups = springs.get("groups") if isinstance(springs, dict) else None
+    for group in groups if isinstance(groups, list) else ():
+        if isinstance(group, dict) and isinstance(name := group.get("curve"), str):
+            group["curve"] = [
+                list(point) for point in read_curve(os.path.join(folder, name), DesignError)
+            ]
 
 
 def json_schema() -> dict[str, Any]:

@@ -6,6 +6,9 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
 from . import _core
 from .arrays import Floats
 from .design import Design
@@ -33,16 +36,20 @@ class EqualiseStep:
 
 @dataclass(frozen=True)
 class Equalised:
-    """A net with tuned stiffness: m springs."""
+    """A net with tuned stiffness: m springs, links of rods among them."""
 
     factors: Floats
-    """(m,): stiffness over stiffness before."""
+    """(m,): stiffness over stiffness before; 1 for the links of rods."""
+    cords: NDArray[np.intp]
+    """(c,): springs that are tuned and counted, all but the links of rods."""
+    design: Design | None
+    """The design with these factors in its file, if it was a design; solving it gives `after`."""
     network: Network
     """The network with these factors on its stiffness."""
     equilibrium: Equilibrium
     """Its equilibrium."""
     before: float
-    """Force differential before: largest over smallest spring force."""
+    """Force differential before: largest over smallest force of the cords."""
     after: float
     """Force differential now; never above that before."""
     iterations: int
@@ -65,9 +72,10 @@ def equalise(
 
     `bounds` are the smallest and the largest factor on a spring's stiffness; `values` are the only
     factors allowed instead: (1, 2, 4) for cords laid single, doubled and fourfold. In both, 1
-    stands for the stiffness as it is. Topology, anchors, rest lengths and loads stay. The result
-    is the same on every run. Raises `InputError`: factors that are not allowed; a net without an
-    equilibrium, with a spring that does not pull, or with loads that follow the shape.
+    stands for the stiffness as it is. Links of rods are no cords: they stay, and don't count.
+    Topology, anchors, rest lengths and loads stay. The result is the same on every run. Raises
+    `InputError`: factors that are not allowed; a net without an equilibrium, with a cord that does
+    not pull, or with loads that follow the shape.
     """
     if iterations < 0:
         raise InputError(f"must be at least 0, not {iterations}", key="iterations")
@@ -75,10 +83,13 @@ def equalise(
         raise InputError("must be two different factors or more", key="values")
     began = time.perf_counter()
     network = subject.network() if isinstance(subject, Design) else subject
+    cords = _cords(subject)
+    if not len(cords):
+        raise InputError("has no springs but the links of rods; add cords", key="network")
     low, high = map(float, bounds)
     allowed = [] if values is None else [float(value) for value in values]
     try:
-        core = _core.Equalisation(network, [low, high], allowed, TOLERANCE)
+        core = _core.Equalisation(network, cords.tolist(), [low, high], allowed, TOLERANCE)
     except _core.CoreError as error:
         key, problem = error.args
         raise InputError(problem, key=key) from None
@@ -86,12 +97,14 @@ def equalise(
     # A keyboard interrupt comes through between two steps.
     while core.iterations < iterations and (advanced := core.advance()):
         if on_step is not None:
-            on_step(EqualiseStep(core.iterations, len(network.springs), core.differential_now))
+            on_step(EqualiseStep(core.iterations, len(cords), core.differential_now))
     factors = core.factors
     factors.setflags(write=False)
     tuned = network.stiffened(factors)
     return Equalised(
         factors,
+        cords,
+        subject.with_stiffness_factors(factors[cords]) if isinstance(subject, Design) else None,
         tuned,
         solve(tuned),
         core.before,
@@ -100,3 +113,16 @@ def equalise(
         not advanced,
         time.perf_counter() - began,
     )
+
+
+def _cords(subject: Design | Network) -> NDArray[np.intp]:
+    """Return the springs that are no links of rods, (c,)."""
+    if isinstance(subject, Design):
+        return np.arange(subject.cords.stop)
+    links = set()
+    for rod in subject.rods:
+        nodes = list(rod.nodes)
+        following = nodes[1:] + (nodes[:1] if rod.closed else [])
+        links |= {frozenset(pair) for pair in zip(nodes, following, strict=False)}
+    pairs = map(frozenset, subject.springs.tolist())
+    return np.flatnonzero([pair not in links for pair in pairs])

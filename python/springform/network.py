@@ -111,9 +111,9 @@ class Network:
         - `force` T [N]: F = T, whatever the length;
         - `curve`, a measured one of force against strain (L - L0)/L0.
 
-        The unstressed length comes from `rest_length` [m], or, but for curves, from `prestress`
-        [N], the force at the start positions; without either it is 0 for `stiffness` and the
-        length at the start for the others. `thermal_strain` α Δϑ lengthens it: L0 (1 + α Δϑ).
+        The unstressed length comes from `rest_length` [m], or from `prestress` [N], the
+        force at the start positions; without either it is 0 for `stiffness` and the length at the
+        start for the others. `thermal_strain` α Δϑ lengthens it: L0 (1 + α Δϑ).
         `sense` is "tension", "both" or "compression".
 
         `loads` are dead, one vector a node [N]. `self_weight` [N/m] pulls along -z, half at each

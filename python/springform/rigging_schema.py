@@ -6,7 +6,8 @@ import math
 import re
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from .schema_base import (
     NODE_PATTERN,
@@ -14,6 +15,7 @@ from .schema_base import (
     Point,
     Section,
     Title,
+    check_node_pair,
     check_node_pairs,
     fault,
 )
@@ -49,6 +51,10 @@ def _check_ratio(value: object) -> object:
 
 
 def _check_curve(value: object) -> object:
+    if isinstance(value, str):
+        raise fault(
+            (), f"names the file {shown(value)}, which only a design in a file can; list points"
+        )
     if not isinstance(value, (list, tuple)):
         raise fault((), f"must be a list of points [strain, force], not {shown(value)}")
     for number, point in enumerate(value):
@@ -75,7 +81,25 @@ Levels = Annotated[
 ]
 Ratio = Annotated[float | tuple[float, ...], BeforeValidator(_check_ratio)]
 CurvePoints = Annotated[
-    tuple[tuple[float, float], ...], BeforeValidator(_check_curve), Field(strict=False)
+    tuple[tuple[float, float], ...],
+    BeforeValidator(_check_curve),
+    Field(strict=False),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {
+                    "type": "array",
+                    "items": {
+                        "type": "array",
+                        "items": {"type": "number"},
+                        "minItems": 2,
+                        "maxItems": 2,
+                    },
+                },
+                {"type": "string", "minLength": 1},
+            ]
+        }
+    ),
 ]
 
 
@@ -119,7 +143,8 @@ class SpringGroup(Section):
     """Law F = T, whatever the length: T [N], not 0; negative ones push."""
     curve: CurvePoints | None = None
     """Measured law: points [strain, force in N] of ascending strain, among them [0, 0]; the strain
-    refers to the unstressed length."""
+    refers to the unstressed length. In a file also the name of a CSV file of such points, in a path
+    relative to the design's: they become part of the design when it is loaded."""
 
     rest_length: _NotNegative | None = None
     """Unstressed length [m]."""
@@ -165,8 +190,6 @@ class SpringGroup(Section):
         laws, rests = self.said(LAWS), self.said(REST_LENGTHS)
         if laws and rests and laws[0] in ("force_density", "force"):
             raise fault((rests[0],), f"means nothing beside {laws[0]}; remove it")
-        if self.curve is not None and self.prestress is not None:
-            raise fault(("prestress",), "cannot stand beside a curve; give rest_ratio instead")
         if self.force == 0:
             raise fault(("force",), "must not be 0")
         choice = ("name", "parts", "types", "levels", "along", "pairs")
@@ -184,6 +207,22 @@ class Springs(Section):
     """Factor on that stiffness for springs along free rings and free edges of sheets."""
     groups: Annotated[tuple[SpringGroup, ...], Field(strict=False)] = ()
     """Springs of other laws; later groups win."""
+    stiffness_factors: dict[str, _Positive] = Field(default={})
+    """Factor on the stiffness that a spring has by its law, by its two node keys; what
+    `springform equalise` writes. Unstressed length, section and weight stay."""
+
+    @field_validator("stiffness_factors")
+    @classmethod
+    def _check_factors(cls, factors: dict[str, float]) -> dict[str, float]:
+        seen: dict[frozenset[str], str] = {}
+        for pair in factors:
+            try:
+                check_node_pair(pair)
+            except PydanticCustomError as error:
+                raise fault((pair,), (error.context or {})["message"]) from None
+            if (other := seen.setdefault(frozenset(pair.split()), pair)) != pair:
+                raise fault((pair,), f"is the same spring as {other}; remove one of the two")
+        return factors
 
 
 class Rod(Section):

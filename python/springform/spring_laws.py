@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arrays import Floats, numbers, read_only, wrong_shape
+from .curve_file import read_curve
 from .errors import InputError
 
 NO_CURVE = 2**32 - 1
@@ -25,13 +27,15 @@ class Curve:
     """A measured force–strain curve: a monotone cubic through test points (Fritsch & Butland 1984).
 
     Strain refers to the unstressed length L0 of a cord: (L - L0)/L0. Beyond the points the curve
-    goes on straight. Attributes: `points` (p, 2): strain and force [N].
+    goes on straight, after the last at least as steep as the chord from the point before.
+    Attributes: `points` (p, 2): strain and force [N].
     """
 
     points: Floats
 
     def __init__(self, points: ArrayLike) -> None:
-        """Take points of ascending strain and force [N] that don't fall, among them (0, 0).
+        """Take points of ascending strain and force [N] that don't fall, among them (0, 0), with a
+        rise at the end.
 
         Raises `InputError`: points that are none of a cord.
         """
@@ -40,6 +44,14 @@ class Curve:
             self._native = _core.ForceStrainCurve(self.points.tolist())
         except _core.CoreError as error:
             raise InputError(error.args[1], key="points") from None
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Curve:
+        """Return the curve in a CSV file of test points: see docs/formats/curve.md.
+
+        Raises `InputError`: with the line, points that are none of a cord.
+        """
+        return cls(read_curve(path))
 
     @property
     def axial_stiffness(self) -> float:
@@ -55,6 +67,11 @@ class Curve:
         """Return the force at strains [N]."""
         strains = np.asarray(strain, dtype=np.float64)
         return self._native.force(strains.reshape(-1)).reshape(strains.shape)
+
+    def strain(self, force: ArrayLike) -> Floats:
+        """Return the least strains at which the cord pulls with forces [N]."""
+        forces = np.asarray(force, dtype=np.float64)
+        return self._native.strain(forces.reshape(-1)).reshape(forces.shape)
 
     def __repr__(self) -> str:
         strain, force = self.points[-1]
@@ -147,7 +164,7 @@ class _Resolver:
         self._check_one_law(~np.isnan([hooke, axial, constant]), curved)
         axial = np.where(curved, [curves[n].axial_stiffness if c else 0.0
                                   for n, c in zip(number, curved, strict=True)], axial)  # fmt: skip
-        rest = self._rest_lengths(hooke, axial, constant, curved, curves, rest_length, prestress)
+        rest = self._rest_lengths(hooke, axial, constant, number, curves, rest_length, prestress)
         with np.errstate(all="ignore"):
             rate = np.where(np.isnan(axial), hooke, axial / rest)
         elastic = np.isnan(constant)
@@ -192,21 +209,17 @@ class _Resolver:
         hooke: Floats,
         axial: Floats,
         constant: Floats,
-        curved: NDArray[np.bool_],
+        number: NDArray[np.uint32],
         curves: list[Curve],
         rest_length: ArrayLike | None,
         prestress: ArrayLike | None,
     ) -> Floats:
+        curved = number != NO_CURVE
         given = self._values("rest_length", _or_nan(rest_length))
         stress = self._values("prestress", _or_nan(prestress))
         if (twice := np.flatnonzero(~np.isnan(given) & ~np.isnan(stress))).size:
             raise InputError(
                 f"spring {twice[0]} has a prestress and a rest length; give one", key="prestress"
-            )
-        if (bad := np.flatnonzero(curved & ~np.isnan(stress))).size:
-            raise InputError(
-                f"spring {bad[0]} has a measured curve; give its rest length instead",
-                key="prestress",
             )
         lengths = self._lengths
         # Numbers that overflow here are refused with the others that are not finite.
@@ -215,6 +228,9 @@ class _Resolver:
             from_stress = np.where(
                 np.isnan(axial), lengths - stress / hooke, lengths / (1.0 + stress / axial)
             )
+            for place, one in enumerate(curves):
+                its = (number == place) & ~np.isnan(stress)
+                from_stress[its] = lengths[its] / (1.0 + one.strain(stress[its]))
         rest = np.where(np.isnan(stress), np.where(np.isnan(given), unstressed, given), from_stress)
         rest = np.where(np.isnan(constant), rest, 0.0)
         if (bad := np.flatnonzero(~np.isnan(axial) & ~(rest > 0))).size:

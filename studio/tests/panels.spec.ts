@@ -32,9 +32,31 @@ test("no panel has serious findings of axe, dark or light", async ({ page, open 
       await accessible(page);
       await page.keyboard.press("Escape");
     }
+    await states(page);
     if (theme === "dark") await page.keyboard.press("d");
   }
 });
+
+/** What appears only while something is selected or chosen. */
+async function states(page: Page): Promise<void> {
+  await page.getByRole("tab", { name: "Net" }).click();
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.click(anchor.x, anchor.y);
+  await page.getByLabel("Support").selectOption("slides in a plane");
+  await accessible(page);
+  await page.getByRole("button", { name: "Finer: trunk" }).hover();
+  await page.locator(".preview-card").waitFor();
+  await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("curve");
+  await accessible(page);
+  await page.getByRole("button", { name: /^Document/ }).click();
+  await page.getByRole("menu").waitFor();
+  await accessible(page);
+  await page.keyboard.press("Escape");
+  await page.locator("main.viewport canvas").focus();
+  for (const key of ["k", "t", "Shift+B"]) await page.keyboard.press(key);
+  await accessible(page);
+  for (const key of ["k", "t", "v", "Escape"]) await page.keyboard.press(key);
+}
 
 test("the framework is changed by form, and what is refused says why", async ({ page, open }) => {
   await open("one-cylinder");

@@ -128,3 +128,78 @@ test("grafting", async ({ page, open }) => {
   await page.keyboard.press("d");
   await take(page, "graft-light");
 });
+
+test("editing", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.click(anchor.x - 9, anchor.y - 34);
+  await page.mouse.move(640, 700);
+  await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("axial_stiffness");
+  await page.getByRole("button", { name: "Apply to the selected spring" }).scrollIntoViewIfNeeded();
+  await take(page, "law");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("curve");
+  await page.getByRole("button", { name: "Apply to trunk" }).click();
+  await page.getByRole("button", { name: "Take back: trunk" }).waitFor();
+  await converged(page);
+  await page.getByLabel("Colour springs by").selectOption("strain");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("button", { name: "Apply to trunk" }).scrollIntoViewIfNeeded();
+  await take(page, "curve");
+});
+
+test("supports", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.click(anchor.x, anchor.y);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("t");
+  await page.getByLabel("Support").selectOption("slides on a line");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.mouse.move(640, 700);
+  await page.waitForTimeout(1500);
+  await take(page, "supports");
+  await page.getByRole("heading", { name: "Reactions" }).scrollIntoViewIfNeeded();
+  await take(page, "reactions");
+  const other = await anchorPlace(page, "A9");
+  await page.mouse.move(other.x, other.y);
+  await page.mouse.down();
+  await page.keyboard.down("Control");
+  await page.mouse.move(other.x + 40, other.y + 30, { steps: 6 });
+  await page.waitForTimeout(900);
+  await take(page, "level");
+  await page.keyboard.up("Control");
+  await page.mouse.up();
+});
+
+test("previews", async ({ page, open }) => {
+  await open("three-cylinders-quad");
+  await page.getByRole("button", { name: "Finer: trunk" }).hover();
+  await page.locator(".preview-card").waitFor();
+  await take(page, "density");
+  await page.mouse.move(640, 700);
+  const anchor = await anchorPlace(page, "A4");
+  await clickCellAbove(page, anchor);
+  await page.keyboard.press("s");
+  await page.getByRole("heading", { name: "4 cells" }).waitFor();
+  await page.keyboard.press("s");
+  await page.getByRole("heading", { name: "16 cells" }).waitFor();
+  await page.getByRole("combobox", { name: "Filter method" }).selectOption("recursive");
+  await page.locator(".preview-card").waitFor();
+  await take(page, "filters");
+});
+
+test("sections", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.locator("main.viewport canvas").focus();
+  for (const key of ["k", "w"]) await page.keyboard.press(key);
+  await page.getByRole("button", { name: "Section across x" }).click();
+  await take(page, "section");
+  await page.locator("main.viewport canvas").focus();
+  for (const key of ["d", "Shift+B"]) await page.keyboard.press(key);
+  await take(page, "brush-light");
+  await page.keyboard.press("v");
+  await page.keyboard.press("d");
+  await page.getByRole("button", { name: /^Document/ }).click();
+  await take(page, "document");
+});

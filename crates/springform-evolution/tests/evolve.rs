@@ -4,7 +4,7 @@ mod runs;
 
 use proptest::prelude::*;
 use runs::common::{Dice, cases, dice};
-use runs::{Start, cylinder, starts};
+use runs::{Start, cords, cylinder, starts};
 use springform_evolution::ending::{Ending, Reason};
 use springform_evolution::evolve::{Evolution, Generation, Parameters, Selection};
 use springform_evolution::fitness::{Criterion, Fitness, SufReference};
@@ -129,6 +129,38 @@ proptest! {
                     prop_assert_eq!(stages.last(), Some(&Stage::Measure));
                 }
             }
+        }
+    }
+
+    /// Cords whose mutants start near their parent's rest: the same bits on any number of threads and when picked up,
+    /// and measures as from the drawn shape.
+    #[test]
+    fn warm_starts_change_nothing(start in cords(8), mut dice in dice(40), stop in 0..GENERATIONS) {
+        let (parameters, rates, mut whole) = random_run(&start, &mut dice, 1);
+        let mut threaded = begin(&start, &parameters, rates, 3);
+        advance(&mut whole, stop);
+        advance(&mut threaded, stop);
+        let parent = whole.parent().clone();
+        let forest = read_again(&parent.forest, &start.setting.catalogue);
+        let strategy = if stop == 0 { rates } else { parent.strategy };
+        let picked_up = Some((stop, whole.start(), parent.suf));
+        let mut resumed = Evolution::new(start.setting.clone(), parameters, forest, strategy, picked_up, 2)
+            .expect("the parent gives a net");
+        let generation = advance(&mut whole, 1).remove(0);
+        prop_assert_eq!(&advance(&mut threaded, 1)[0], &generation);
+        prop_assert_eq!(&advance(&mut resumed, 1)[0], &generation);
+        for individual in generation.individuals {
+            let mut forest = parent.forest.clone();
+            prop_assert_eq!(Edit::apply_all(&individual.edits, &mut forest), Ok(()));
+            let cold = start.setting.evaluate(&forest).ok();
+            prop_assert_eq!(individual.measures.is_some(), cold.is_some());
+            let (Some(measures), Some(cold)) = (individual.measures, cold) else { continue };
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * cold.measures.force_max;
+            prop_assert!(near(measures.force_max, cold.measures.force_max));
+            prop_assert!(near(measures.force_min, cold.measures.force_min));
+            // Slack cords rest in more than one place, and next to slack the smallest force has few digits.
+            let taut = cold.measures.force_min > 1e-4 * cold.measures.force_max;
+            prop_assert!(!taut || runs::alike(&measures, &cold.measures), "{measures:?} {:?}", cold.measures);
         }
     }
 

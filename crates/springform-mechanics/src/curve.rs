@@ -2,7 +2,8 @@
 //!
 //! Fritsch & Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984: slopes at inner
 //! points are weighted harmonic means, so that the curve never overshoots its points; slopes at the ends are those of
-//! a parabola, limited in the same way (Moler, "Numerical computing with MATLAB", 2004, section 3.6).
+//! a parabola, limited in the same way (Moler, "Numerical computing with MATLAB", 2004, section 3.6). Beyond the last
+//! point the slope is at least the secant of the last piece: Moler's may be 0 there, and the cord would yield without end.
 
 use thiserror::Error;
 
@@ -10,7 +11,7 @@ use thiserror::Error;
 ///
 /// A spring with a curve g pulls with F = k r g((L − r)/r) [N]. As g(ε) = ε at the last test point, k r is the axial
 /// stiffness EA [N] that the cord has there as a secant; for a straight line of points, F = k (L − r). Beyond the
-/// first and the last point the curve goes on straight.
+/// first and the last point the curve goes on straight, beyond the last at the secant of the last piece or steeper.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Curve {
     /// Strains of the points, ascending.
@@ -19,6 +20,8 @@ pub struct Curve {
     values: Vec<f64>,
     /// Slope at every point.
     slopes: Vec<f64>,
+    /// Slope before the first point and beyond the last.
+    outer: [f64; 2],
     /// Area under the curve from the first point to every point.
     areas: Vec<f64>,
     /// Force over strain at the last point [N].
@@ -52,8 +55,8 @@ pub enum CurveError {
     /// The curve does not pass through strain 0 at force 0.
     #[error("must have the point of strain 0 and force 0")]
     Origin,
-    /// The last point is not stretched or not pulled.
-    #[error("must end at a strain and a force above 0")]
+    /// The last point is not stretched or not pulled, or the force does not rise to it.
+    #[error("must end with a rise to a strain and a force above 0, from which it goes on")]
     End,
 }
 
@@ -69,7 +72,11 @@ impl Curve {
         let strains: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let values: Vec<f64> = points.iter().map(|point| point[1] / axial_stiffness).collect();
         let slopes = monotone_slopes(&strains, &values);
-        let mut curve = Curve { areas: vec![0.0; strains.len()], strains, values, slopes, axial_stiffness };
+        let end = strains.len() - 1;
+        let rise = (values[end] - values[end - 1]) / (strains[end] - strains[end - 1]);
+        let outer = [slopes[0], slopes[end].max(rise)];
+        let mut curve =
+            Curve { areas: vec![0.0; strains.len()], strains, values, slopes, outer, axial_stiffness };
         for piece in 0..points.len() - 1 {
             let width = curve.strains[piece + 1] - curve.strains[piece];
             curve.areas[piece + 1] = curve.areas[piece] + curve.piece_area(piece, width);
@@ -103,14 +110,36 @@ impl Curve {
         (linear + along * (2.0 * square + 3.0 * along * cube)).max(0.0)
     }
 
+    /// The least strain at which the scaled force g has a value; minus infinity if it is below all that the curve has.
+    pub fn strain(&self, value: f64) -> f64 {
+        let last = self.values.len() - 1;
+        if value > self.values[last] {
+            return self.strains[last] + (value - self.values[last]) / self.outer[1];
+        }
+        let point = self.values.partition_point(|&known| known < value);
+        if point == 0 {
+            let beyond = self.values[0] - value;
+            return self.strains[0] - if beyond == 0.0 { 0.0 } else { beyond / self.outer[0] };
+        }
+        // Within a piece the force does not fall: halved until no number is left between.
+        let [mut low, mut high] = [self.strains[point - 1], self.strains[point]];
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return high;
+            }
+            *(if self.value(middle) < value { &mut low } else { &mut high }) = middle;
+        }
+    }
+
     /// Area under the curve from strain 0.
     pub fn area(&self, strain: f64) -> f64 {
         if let Some((piece, along)) = self.piece(strain) {
             return self.areas[piece] + self.piece_area(piece, along);
         }
-        let end = if strain < self.strains[0] { 0 } else { self.strains.len() - 1 };
+        let (end, slope) = self.end(strain);
         let along = strain - self.strains[end];
-        self.areas[end] + along * (self.values[end] + 0.5 * along * self.slopes[end])
+        self.areas[end] + along * (self.values[end] + 0.5 * along * slope)
     }
 
     /// The piece that a strain lies in, and how far from its start; `None` beyond the points.
@@ -124,8 +153,13 @@ impl Curve {
     }
 
     fn beyond(&self, strain: f64) -> (f64, f64) {
-        let end = if strain < self.strains[0] { 0 } else { self.strains.len() - 1 };
-        (self.values[end] + self.slopes[end] * (strain - self.strains[end]), self.slopes[end])
+        let (end, slope) = self.end(strain);
+        (self.values[end] + slope * (strain - self.strains[end]), slope)
+    }
+
+    /// The point beyond which a strain lies, and the slope there.
+    fn end(&self, strain: f64) -> (usize, f64) {
+        if strain < self.strains[0] { (0, self.outer[0]) } else { (self.strains.len() - 1, self.outer[1]) }
     }
 
     /// Coefficients of a piece's powers, from the first.
@@ -160,8 +194,8 @@ fn check(points: &[[f64; 2]]) -> Result<(), CurveError> {
     if !points.contains(&[0.0, 0.0]) {
         return Err(CurveError::Origin);
     }
-    let last = points[points.len() - 1];
-    if last[0] > 0.0 && last[1] > 0.0 && (last[1] / last[0]).is_finite() {
+    let [before, last] = [points[points.len() - 2], points[points.len() - 1]];
+    if last[0] > 0.0 && last[1] > before[1].max(0.0) && (last[1] / last[0]).is_finite() {
         Ok(())
     } else {
         Err(CurveError::End)

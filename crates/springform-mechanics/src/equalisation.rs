@@ -78,7 +78,7 @@ enum Phase {
     Done,
 }
 
-/// Stiffness on its way to even forces; m springs.
+/// Stiffness on its way to even forces; m springs, of which some are tuned.
 pub struct Equalisation {
     net: Net,
     /// Smallest and largest factor.
@@ -103,6 +103,8 @@ struct Net {
     network: Network<'static>,
     stiffness: Vec<f64>,
     solver: Solver,
+    /// The springs that are tuned and counted.
+    tuned: Vec<usize>,
     settings: Settings,
     sensitivity: Sensitivity,
     equilibrium: Equilibrium,
@@ -110,20 +112,23 @@ struct Net {
 }
 
 impl Equalisation {
-    /// Starts with a network that passes [`Network::check`], all factors 1.
+    /// Starts with a network that passes [`Network::check`], all factors 1; `tuned` are the springs, one or more, that are
+    /// tuned and whose forces count, ascending.
     ///
     /// # Errors
     /// Factors that are not allowed, or a net without equilibrium, differential or derivatives.
     pub fn new(
         network: Network<'static>,
+        tuned: Vec<usize>,
         allowed: &Allowed,
         settings: Settings,
     ) -> Result<Self, EqualisationError> {
         let ([low, high], values) = check(allowed)?;
-        let start = vec![0.0; network.springs.len()];
+        let start = vec![0.0; tuned.len()];
         let mut net = Net {
             stiffness: network.stiffness.to_vec(),
             network,
+            tuned,
             solver: Solver::default(),
             settings,
             sensitivity: Sensitivity::default(),
@@ -161,12 +166,16 @@ impl Equalisation {
         true
     }
 
-    /// Factor on the stiffness of every spring, m: the best so far of those that are allowed.
+    /// Factor on the stiffness of every spring, m: the best so far of those that are allowed, 1 for those not tuned.
     pub fn factors(&self) -> Vec<f64> {
         let [low, high] = self.range;
         let value = |log: f64| self.allowed.iter().position(|value| *value == log).map(|at| self.values[at]);
         // The exponential of a logarithm is off by rounding.
-        self.best.1.iter().map(|&log| value(log).unwrap_or_else(|| log.exp().clamp(low, high))).collect()
+        let mut factors = vec![1.0; self.net.stiffness.len()];
+        for (&spring, &log) in self.net.tuned.iter().zip(&self.best.1) {
+            factors[spring] = value(log).unwrap_or_else(|| log.exp().clamp(low, high));
+        }
+        factors
     }
 
     /// Force differential before.
@@ -301,8 +310,8 @@ impl Net {
     /// Solves at a point, from the last equilibrium.
     fn solve(&mut self, point: &[f64]) -> Result<(), EqualisationError> {
         let stiffness = self.network.stiffness.to_mut();
-        for (stiffness, (given, log)) in stiffness.iter_mut().zip(self.stiffness.iter().zip(point)) {
-            *stiffness = given * log.exp();
+        for (&spring, log) in self.tuned.iter().zip(point) {
+            stiffness[spring] = self.stiffness[spring] * log.exp();
         }
         self.solver.solve_into(&self.network, &self.settings, &mut self.equilibrium);
         if self.equilibrium.status == Status::Converged {
@@ -313,20 +322,25 @@ impl Net {
     }
 
     fn differential(&self) -> Option<f64> {
-        let forces = || self.equilibrium.forces.iter().copied();
-        force_differential(forces().fold(f64::INFINITY, f64::min), forces().fold(f64::NEG_INFINITY, f64::max))
+        let least = self.forces().fold(f64::INFINITY, f64::min);
+        force_differential(least, self.forces().fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// Forces of the springs that are tuned [N].
+    fn forces(&self) -> impl Iterator<Item = f64> + '_ {
+        self.tuned.iter().map(|&spring| self.equilibrium.forces[spring])
     }
 
     /// Says which spring leaves the differential undefined.
     fn weakest(&self) -> EqualisationError {
-        let forces = self.equilibrium.forces.iter().copied().enumerate();
+        let forces = self.tuned.iter().copied().zip(self.forces());
         let (spring, force) = forces.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
         EqualisationError::Slack { spring, force }
     }
 
     /// log(Σ F^p)/p of the forces, for p of either sign, and the share of each force in the sum.
     fn log_sum(&self, power: f64) -> (f64, Vec<f64>) {
-        let logs: Vec<f64> = self.equilibrium.forces.iter().map(|force| power * force.ln()).collect();
+        let logs: Vec<f64> = self.forces().map(|force| power * force.ln()).collect();
         let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut shares: Vec<f64> = logs.iter().map(|log| (log - most).exp()).collect();
         let sum: f64 = shares.iter().sum();
@@ -346,11 +360,14 @@ impl Valley for Net {
     fn gradient(&mut self) -> Option<Vec<f64>> {
         self.sensitivity.build(&self.network, &self.equilibrium.positions).ok()?;
         let (largest, smallest) = (self.log_sum(self.sharpness).1, self.log_sum(-self.sharpness).1);
-        let shares = largest.iter().zip(&smallest).zip(&self.equilibrium.forces);
-        let by_forces: Vec<f64> = shares.map(|((most, least), force)| (most - least) / force).collect();
+        let mut by_forces = vec![0.0; self.network.springs.len()];
+        for (&spring, (most, least)) in self.tuned.iter().zip(largest.iter().zip(&smallest)) {
+            by_forces[spring] = (most - least) / self.equilibrium.forces[spring];
+        }
         let still = vec![[0.0; 3]; self.network.positions.len()];
-        let mut gradient = self.sensitivity.gradient(&still, &by_forces).stiffness;
-        gradient.iter_mut().zip(self.network.stiffness.iter()).for_each(|(slope, k)| *slope *= k);
+        let by_stiffness = self.sensitivity.gradient(&still, &by_forces).stiffness;
+        let slope = |&spring: &usize| by_stiffness[spring] * self.network.stiffness[spring];
+        let gradient = self.tuned.iter().map(slope).collect();
         // The next solve starts where this one ended.
         if !self.network.is_linear() {
             self.network.positions.to_mut().clone_from(&self.equilibrium.positions);

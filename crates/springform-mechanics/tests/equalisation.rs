@@ -23,7 +23,8 @@ fn differential(network: &Network<'_>) -> f64 {
 }
 
 fn run(network: &Network<'static>, allowed: &Allowed) -> Result<Equalisation, EqualisationError> {
-    let mut equalisation = Equalisation::new(network.clone(), allowed, Settings::default())?;
+    let all = (0..network.springs.len()).collect();
+    let mut equalisation = Equalisation::new(network.clone(), all, allowed, Settings::default())?;
     let mut last = equalisation.differential();
     while equalisation.iterations() < STEPS && equalisation.advance() {
         assert!(equalisation.differential() <= last);

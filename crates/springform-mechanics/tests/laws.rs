@@ -77,6 +77,10 @@ proptest! {
         let (before, after) = (curve.value(strain - step), curve.value(strain + step));
         prop_assert!(before <= after + 1e-12 * most);
         prop_assert!(curve.slope(strain) >= 0.0);
+        prop_assert!(curve.slope(last) > 0.0 && curve.slope(last + 1.0) == curve.slope(last));
+        let found = curve.strain(curve.value(strain));
+        prop_assert!(curve.value(found - step) <= curve.value(strain) + 1e-12 * most);
+        prop_assert!((curve.value(found) - curve.value(strain)).abs() <= 1e-12 * most);
         let kink = points.iter().any(|point| (point[0] - strain).abs() <= step);
         prop_assume!(!kink);
         let steepest = points.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));

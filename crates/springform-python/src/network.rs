@@ -80,6 +80,12 @@ impl ForceStrainCurve {
         self.curve.axial_stiffness()
     }
 
+    /// Least strains at which the curve has forces in N.
+    fn strain<'py>(&self, py: Python<'py>, forces: PyReadonlyArray1<'py, f64>) -> PyResult<Floats<'py>> {
+        let strain = |&force: &f64| self.curve.strain(force / self.curve.axial_stiffness());
+        Ok(PyArray1::from_iter(py, values("forces", &forces)?.iter().map(strain)))
+    }
+
     /// Force at strains, N.
     fn force<'py>(&self, py: Python<'py>, strains: PyReadonlyArray1<'py, f64>) -> PyResult<Floats<'py>> {
         let force = |&strain: &f64| self.curve.axial_stiffness() * self.curve.value(strain);

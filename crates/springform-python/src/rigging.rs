@@ -20,6 +20,7 @@ use springform_topology::node_key::NodeKey;
 #[derive(FromPyObject)]
 pub struct Sections {
     groups: Vec<Group>,
+    stiffness_factors: Vec<(String, f64)>,
     rods: Vec<Rod>,
     node_loads: Vec<Load>,
     pressures: Vec<PressureSection>,
@@ -107,6 +108,11 @@ impl Sections {
         for (number, group) in self.groups.iter().enumerate() {
             let group = reader.group(&format!("springs.groups[{number}]"), group, &mut rigging.curves)?;
             rigging.groups.push(group);
+        }
+        for (line, factor) in &self.stiffness_factors {
+            let pair = pair(mesh, line)
+                .map_err(|problem| refusal(format!("springs.stiffness_factors.{line}"), problem))?;
+            rigging.factors.push((pair, *factor));
         }
         for (number, rod) in self.rods.iter().enumerate() {
             rigging.rods.push(BorderRod {
@@ -287,16 +293,18 @@ impl Reader<'_> {
 /// # Errors
 /// Not two different nodes of the framework.
 pub fn pairs(mesh: &BaseMesh, key: &str, lines: &[String]) -> PyResult<Vec<NodePair>> {
-    let pair = |line: &String| {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let [a, b] = words[..] else {
-            return Err("write two nodes, such as 'v1 e7:1/2'".to_owned());
-        };
-        let node = |word| NodeKey::parse(word, mesh).map_err(|error| error.to_string());
-        NodePair::new(node(a)?, node(b)?).ok_or_else(|| "the two nodes are the same".to_owned())
-    };
     let numbered = lines.iter().enumerate();
     numbered
-        .map(|(at, line)| pair(line).map_err(|problem| refusal(format!("{key}[{at}]"), problem)))
+        .map(|(at, line)| pair(mesh, line).map_err(|problem| refusal(format!("{key}[{at}]"), problem)))
         .collect()
+}
+
+/// Two nodes, written as two keys; else what is wrong.
+fn pair(mesh: &BaseMesh, line: &str) -> Result<NodePair, String> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [a, b] = words[..] else {
+        return Err("write two nodes, such as 'v1 e7:1/2'".to_owned());
+    };
+    let node = |word| NodeKey::parse(word, mesh).map_err(|error| error.to_string());
+    NodePair::new(node(a)?, node(b)?).ok_or_else(|| "the two nodes are the same".to_owned())
 }

@@ -92,11 +92,12 @@ pub struct Equalisation {
 
 #[pymethods]
 impl Equalisation {
-    /// Factors between bounds, or, where there are any, of a few values.
+    /// Factors between bounds, or, where there are any, of a few values, on the springs that are `tuned` and counted.
     #[new]
     fn new(
         py: Python<'_>,
         network: NetworkArrays<'_>,
+        tuned: Vec<usize>,
         bounds: [f64; 2],
         values: Vec<f64>,
         tolerance: f64,
@@ -105,7 +106,7 @@ impl Equalisation {
         let allowed = if values.is_empty() { Allowed::Between(bounds) } else { Allowed::Values(values) };
         let network = network.network()?.into_owned();
         let settings = Settings { tolerance, ..Settings::default() };
-        let started = py.detach(|| equalisation::Equalisation::new(network, &allowed, settings));
+        let started = py.detach(|| equalisation::Equalisation::new(network, tuned, &allowed, settings));
         let equalisation = started.map_err(|error| match error {
             EqualisationError::Allowed(_) => refusal(key, error),
             _ => refusal("network", error),

@@ -15,7 +15,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..files import WriteError, explain
 from ..wording import nearest
-from . import equilibria, individuals, large, machine, peers, reference, runs, scikit_sparse
+from . import equilibria, individuals, large, machine, peers, reference, runs, scikit_sparse, studio
 from .comparison import Bench
 from .records import Row, write_csv
 from .timing import Effort
@@ -35,11 +35,12 @@ CASES: dict[str, Callable[[str, Bench], Iterator[Row]]] = {
     "large-1m": partial(large.large, springs=1_000_000),
     "threads": individuals.threads,
     "stream": runs.stream,
+    "studio": studio.studio,
 }
 """All cases."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
-    "default": ("individual", "growth", "nonlinear-2k", "large-20k", "threads", "stream"),
+    "default": ("individual", "growth", "nonlinear-2k", "large-20k", "threads", "stream", "studio"),
     "nonlinear": ("nonlinear-2k", "nonlinear-20k", "nonlinear-200k"),
     "large": ("large-20k", "large-200k", "large-1m"),
     "all": tuple(CASES),

@@ -9,8 +9,8 @@ import numpy as np
 import typer
 
 from .. import results
-from ..design import load
-from ..equalisation import BOUNDS, ITERATIONS, EqualiseStep, equalise
+from ..design import Design, load, save
+from ..equalisation import BOUNDS, ITERATIONS, Equalised, EqualiseStep, equalise
 from ..errors import InputError
 from ..files import WriteError
 from .terminal import DesignArgument, Json, print_report, progress_bar, say, update_bar
@@ -19,7 +19,8 @@ commands = typer.Typer()
 
 
 @commands.command(
-    "equalise", epilog="Example: `springform equalise three-cylinders --bounds 0.25,4 --out a.csv`"
+    "equalise",
+    epilog="Example: `springform equalise three-cylinders --bounds 0.25,4 --out even.toml`",
 )
 def equalise_command(
     design: DesignArgument,
@@ -32,7 +33,10 @@ def equalise_command(
         typer.Option(help="The only factors allowed, instead of bounds: 1,2,4 for doubled cords."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Table of springs, factors and forces: a .csv file.")
+        Path | None,
+        typer.Option(
+            help="The tuned design, a .toml or .json file, or a table of factors and forces, .csv."
+        ),
     ] = None,
     iterations: Annotated[int, typer.Option(min=0, help="Most steps.")] = ITERATIONS,
     as_json: Json = False,
@@ -69,20 +73,21 @@ def equalise_command(
         except InputError as error:
             raise _named(error, design) from None
     if out is not None:
-        results.write_factors(net, tuned, out)
+        _write(tuned, net, out)
+    factors = tuned.factors[tuned.cords]
     report = {
-        "springs": len(tuned.factors),
+        "springs": len(tuned.cords),
         "force_differential": {"before": tuned.before, "after": tuned.after},
         "stiffness_factor": {
-            "min": float(tuned.factors.min()),
-            "max": float(tuned.factors.max()),
+            "min": float(factors.min()),
+            "max": float(factors.max()),
         },
         "iterations": tuned.iterations,
         "converged": tuned.converged,
         "seconds": tuned.seconds,
     }
     if allowed is not None:
-        kinds, counts = np.unique(tuned.factors, return_counts=True)
+        kinds, counts = np.unique(factors, return_counts=True)
         report["springs_by_factor"] = {
             f"{kind:g}": int(count) for kind, count in zip(kinds, counts, strict=True)
         }
@@ -105,8 +110,15 @@ def _named(error: InputError, design: str) -> InputError:
     return InputError(error.message, file=design)
 
 
+def _write(tuned: Equalised, before: Design, path: Path) -> None:
+    if path.suffix.lower() == ".csv" or tuned.design is None:
+        results.write_factors(before, tuned, path)
+    else:
+        save(tuned.design, path)
+
+
 def _check_writable(path: Path) -> None:
-    if path.suffix != ".csv":
-        raise WriteError("must end in .csv", file=path)
+    if path.suffix.lower() not in (".toml", ".json", ".csv"):
+        raise WriteError("must end in .toml, .json or .csv", file=path)
     if not path.parent.is_dir():
         raise WriteError(f"the folder {path.parent} does not exist; make it first", file=path)

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from .. import design_file
 from ..design import Design
-from ..errors import DesignError
+from ..errors import DesignError, InputError
 
 Path = tuple[str | int, ...]
 """Where a value stands in a design file, such as ``("framework", "anchors", 6, "position")``."""
@@ -82,6 +82,26 @@ def value_at(values: Any, path: list[str | int]) -> Any:
         except (LookupError, TypeError):
             raise DesignError("there is no such value", key=_key(path)) from None
     return values
+
+
+def forest_action(label: str, edits: list[str]) -> Action:
+    """Return the action of edits of the forest."""
+    return Action(label=label, changes=[ForestChange(edits=edits)])
+
+
+def value_action(design: Design, label: str, path: list[str | int], after: Any) -> Action:
+    """Return the action that changes one value of the design file.
+
+    Raises `InputError`: nothing would change; `DesignError`: no such value, or it is not allowed.
+    """
+    before = value_at(values_of(design), path)
+    change = ValueChange(path=path, before=before, after=after)
+    action = Action(label=label, changes=[change])
+    # As the file holds it, so that the change can be checked when it is undone.
+    kept = value_at(values_of(apply(design, action)), path)
+    if kept == before:
+        raise InputError("nothing would change", key=".".join(str(step) for step in path))
+    return Action(label=label, changes=[change.model_copy(update={"after": kept})])
 
 
 def _changed(design: Design, change: Change) -> Design:

@@ -11,9 +11,23 @@ from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
 from ..evolution import seek
-from .changes import Action, ForestChange, ValueChange, apply, value_at, values_of
+from .changes import Action, ValueChange, values_of
+from .changes import forest_action as _forest
+from .changes import value_action as _value
+from .density import set_density
+from .editing_messages import DropSprings, SetDensity, SetSprings
 from .grafts import whole_orbit
-from .messages import EditCells, EditSpring, FixNode, MoveAnchor, SeekStress, SetFramework, SetValue
+from .messages import (
+    EditCells,
+    EditSpring,
+    FixNode,
+    MoveAnchor,
+    SeekStress,
+    SetFramework,
+    SetValue,
+)
+from .spring_groups import drop_springs, set_springs
+from .supports import fix_node, move_anchor
 
 
 def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Action, list[str]]:
@@ -33,6 +47,12 @@ def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Ac
             action = move_anchor(design, request)
         case FixNode():
             action = fix_node(design, request, positions)
+        case SetSprings():
+            action = set_springs(design, request)
+        case DropSprings():
+            action = drop_springs(design, request)
+        case SetDensity():
+            action = set_density(design, request)
         case SetValue():
             action = set_value(design, request)
         case SetFramework():
@@ -72,46 +92,6 @@ def edit_spring(design: Design, request: EditSpring) -> Action:
     return _forest(label, [f"{first} {second} {word}"])
 
 
-def move_anchor(design: Design, request: MoveAnchor) -> Action:
-    """Return the action that holds an anchor elsewhere."""
-    try:
-        number = design.anchor_names.index(request.anchor)
-    except ValueError:
-        raise DesignError("there is no anchor of this name", key=request.anchor) from None
-    path: list[str | int] = ["framework", "anchors", number, "position"]
-    return _value(design, f"Move anchor {request.anchor}", path, request.position)
-
-
-def fix_node(design: Design, request: FixNode, positions: Floats) -> Action:
-    """Return the action that makes a node an anchor where it is now, or lets an anchor go."""
-    path: list[str | int] = ["framework", "anchors"]
-    anchors: list[dict[str, Any]] = value_at(values_of(design), path)
-    # Names that stand for places in the list must not move to other anchors.
-    named = [
-        anchor | {"name": name} for anchor, name in zip(anchors, design.anchor_names, strict=True)
-    ]
-    row = _row(design, request.node)
-    held = design.anchors.tolist()
-    if request.fixed:
-        if row in held:
-            raise InputError("is an anchor already", key=request.node)
-        if not request.node.startswith("v"):
-            problem = (
-                "lies inside a cell or on an edge; only corners of top-level cells can be held"
-            )
-            raise InputError(problem, key=request.node)
-        name = _free_name(design)
-        place = [round(value, 6) for value in positions[row].tolist()]
-        vertex = int(request.node[1:])
-        new = {"name": name, "vertex": vertex, "position": place}
-        return _value(design, f"Hold a node as anchor {name}", path, [*named, new])
-    if row not in held:
-        raise InputError("is no anchor", key=request.node)
-    number = held.index(row)
-    label = f"Let go anchor {design.anchor_names[number]}"
-    return _value(design, label, path, named[:number] + named[number + 1 :])
-
-
 def seek_stress(design: Design, request: SeekStress) -> tuple[Action, list[str]]:
     """Return the action that subdivides where the force is, and the last cells that it made."""
     edits: list[str] = []
@@ -147,7 +127,10 @@ def set_framework(design: Design, request: SetFramework) -> Action:
     try:
         after = values_of(Design(design_file.from_data(wanted)))
     except DesignError:
-        wanted |= {"forest": empty, "overrides": bare}
+        # What names single nodes can't be carried to another framework.
+        groups = [group for group in values["springs"]["groups"] if group["pairs"] is None]
+        springs = values["springs"] | {"groups": groups}
+        wanted |= {"forest": empty, "overrides": bare, "springs": springs}
         after = values_of(Design(design_file.from_data(wanted)))
     whole = ValueChange(path=[], before=values, after=after)
     return Action(label=label, changes=[whole])
@@ -215,35 +198,3 @@ def _children(cells: list[str]) -> list[str]:
 
 def _counted(verb: str, cells: list[str]) -> str:
     return f"{verb} cell {cells[0]}" if len(cells) == 1 else f"{verb} {len(cells)} cells"
-
-
-# --- values ---------------------------------------------------------------------------------------
-
-
-def _forest(label: str, edits: list[str]) -> Action:
-    return Action(label=label, changes=[ForestChange(edits=edits)])
-
-
-def _value(design: Design, label: str, path: list[str | int], after: Any) -> Action:
-    before = value_at(values_of(design), path)
-    change = ValueChange(path=path, before=before, after=after)
-    action = Action(label=label, changes=[change])
-    # As the file holds it, so that the change can be checked when it is undone.
-    kept = value_at(values_of(apply(design, action)), path)
-    if kept == before:
-        raise InputError("nothing would change", key=".".join(str(step) for step in path))
-    return Action(label=label, changes=[change.model_copy(update={"after": kept})])
-
-
-def _row(design: Design, node: str) -> int:
-    try:
-        return design.nodes.index(node)
-    except ValueError:
-        raise DesignError("is no node of the net", key=node) from None
-
-
-def _free_name(design: Design) -> str:
-    number = len(design.anchor_names) + 1
-    while f"A{number}" in design.anchor_names:
-        number += 1
-    return f"A{number}"

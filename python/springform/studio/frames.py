@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from ..design import Design, Groups
 from ..network import Network
-from ..spring_laws import NO_CURVE
 from .messages import ArrayHeader, NetHeader
 
 Ints = NDArray[np.int32]
@@ -91,6 +90,7 @@ SPRING_COLUMNS = (
     "spring_part",
     "spring_ring",
     "spring_law",
+    "spring_sense",
     "area",
     "stiffness",
     "rest_length",
@@ -169,6 +169,8 @@ def _spring_columns(design: Design, network: Network) -> dict[str, NDArray[Any]]
         "spring_part": part,
         "spring_ring": ring,
         "spring_law": _laws(design, network),
+        # 0: pulls only, 1: pulls and pushes, 2: pushes only.
+        "spring_sense": (1 - network.sense).astype(np.uint8),
         "area": np.nan_to_num(network.area, nan=0.0).astype(np.float32),
         "stiffness": network.stiffness.astype(np.float32),
         "rest_length": network.rest_length.astype(np.float32),
@@ -176,12 +178,14 @@ def _spring_columns(design: Design, network: Network) -> dict[str, NDArray[Any]]
     }
 
 
+_ROD = 5
+"""In place of the number of a law: the spring is a link of a rod."""
+
+
 def _laws(design: Design, network: Network) -> NDArray[np.uint8]:
-    """Return the law of every spring: 0 stiffness, 1 constant force, 2 curve, 3 link of a rod."""
-    laws = np.where(network.stiffness == 0, 1, 0).astype(np.uint8)
-    if network.curve.size:
-        laws[network.curve != NO_CURVE] = 2
-    laws[design.cords.stop :] = 3
+    """Return the law of every spring: its place in `spring_laws.LAWS`, or `_ROD`."""
+    laws = network.law.astype(np.uint8)
+    laws[design.cords.stop :] = _ROD
     return laws
 
 

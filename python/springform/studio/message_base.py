@@ -1,4 +1,4 @@
-"""What every message between the engine and a window is made of."""
+"""Pieces of all messages between the engine and a window: numbers with limits, and the base."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 Key = Annotated[str, Field(max_length=200)]
 Address = Annotated[str, Field(max_length=200)]
 
 
 class Message(BaseModel):
-    """A message, or a part of one: checked strictly, and closed."""
+    """What travels as JSON; nothing in it changes."""
 
     model_config = ConfigDict(
         strict=True,

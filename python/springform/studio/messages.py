@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
+from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
 from .graft_messages import (
     AskSymmetry,
     CopyPatch,
@@ -27,16 +28,13 @@ from .graft_messages import (
     SelectCells,
     SymmetryState,
 )
-from .message_base import Address, Key, Message
-
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Vector = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
-
+from .message_base import Address, Key, Vector
+from .message_base import Message as _Message
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
 
-class EditCells(Message):
+class EditCells(_Message):
     """Subdivide, switch off, switch on or retype cells."""
 
     type: Literal["edit_cells"] = "edit_cells"
@@ -49,7 +47,7 @@ class EditCells(Message):
     """Whether the images under the framework's symmetries are edited too."""
 
 
-class EditSpring(Message):
+class EditSpring(_Message):
     """Cut the spring between two nodes, or add one."""
 
     type: Literal["edit_spring"] = "edit_spring"
@@ -58,7 +56,7 @@ class EditSpring(Message):
     nodes: Annotated[list[Key], Field(min_length=2, max_length=2)]
 
 
-class MoveAnchor(Message):
+class MoveAnchor(_Message):
     """Hold an anchor somewhere else."""
 
     type: Literal["move_anchor"] = "move_anchor"
@@ -67,16 +65,22 @@ class MoveAnchor(Message):
     position: Vector
 
 
-class FixNode(Message):
-    """Make a base vertex an anchor where it is now, or let an anchor go."""
+class FixNode(_Message):
+    """Make a base vertex an anchor where it is now, hold an anchor otherwise, or let it go."""
 
     type: Literal["fix_node"] = "fix_node"
     id: int
     node: Key
     fixed: bool
+    holds: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = "xyz"
+    """Along which axes it is held; it slides along the others."""
+    line: Vector | None = None
+    """Direction of a line on which it slides."""
+    plane: Vector | None = None
+    """Normal of a plane in which it slides."""
 
 
-class SeekStress(Message):
+class SeekStress(_Message):
     """Subdivide the cell of highest inner force, a number of times."""
 
     type: Literal["seek_stress"] = "seek_stress"
@@ -85,7 +89,7 @@ class SeekStress(Message):
     kind: Annotated[str, Field(max_length=100)]
 
 
-class SetValue(Message):
+class SetValue(_Message):
     """Change a value of the design file."""
 
     type: Literal["set_value"] = "set_value"
@@ -95,7 +99,7 @@ class SetValue(Message):
     value: Any
 
 
-class SetFramework(Message):
+class SetFramework(_Message):
     """Change the framework; cells that no longer fit start anew."""
 
     type: Literal["set_framework"] = "set_framework"
@@ -103,7 +107,18 @@ class SetFramework(Message):
     framework: dict[str, Any]
 
 
-class Undo(Message):
+class Preview(_Message):
+    """Tell what an action would do, and do nothing."""
+
+    type: Literal["preview"] = "preview"
+    id: int
+    action: Annotated[
+        EditCells | EditSpring | SeekStress | SetDensity | SetValue | SetSprings,
+        Field(discriminator="type"),
+    ]
+
+
+class Undo(_Message):
     """Undo the last action, or redo the one that was undone last."""
 
     type: Literal["undo"] = "undo"
@@ -111,7 +126,7 @@ class Undo(Message):
     redo: bool
 
 
-class Travel(Message):
+class Travel(_Message):
     """Undo or redo until a number of actions is done."""
 
     type: Literal["travel"] = "travel"
@@ -119,7 +134,7 @@ class Travel(Message):
     position: Annotated[int, Field(ge=0)]
 
 
-class Save(Message):
+class Save(_Message):
     """Write the design file; a path makes it the document's file."""
 
     type: Literal["save"] = "save"
@@ -129,7 +144,7 @@ class Save(Message):
     """Whether another file that exists is replaced."""
 
 
-class Move(Message):
+class Move(_Message):
     """Let the net move, stop it, make one step, or put it back to where it was drawn."""
 
     type: Literal["move"] = "move"
@@ -137,7 +152,7 @@ class Move(Message):
     what: Literal["run", "pause", "step", "reset"]
 
 
-class Evolve(Message):
+class Evolve(_Message):
     """Start a run from the design, with parameters; what is left out has its default."""
 
     type: Literal["evolve"] = "evolve"
@@ -145,16 +160,16 @@ class Evolve(Message):
     parameters: dict[str, Any]
 
 
-class SteerRun(Message):
+class SteerRun(_Message):
     """Pause a run, let it go on, end it, or change parameters from the next generation on."""
 
     type: Literal["steer_run"] = "steer_run"
     id: int
     what: Literal["pause", "continue", "stop", "change"]
-    parameters: dict[str, Any] = Field(default_factory=dict)
+    parameters: dict[str, Any] = Field(default={})
 
 
-class Look(Message):
+class Look(_Message):
     """Show a parent or an individual of the run instead of the design, or the design again."""
 
     type: Literal["look"] = "look"
@@ -165,7 +180,7 @@ class Look(Message):
     """None: the parent that the generation chose."""
 
 
-class Follow(Message):
+class Follow(_Message):
     """Show the parent of the newest generation for as long as the run goes on, or no longer."""
 
     type: Literal["follow"] = "follow"
@@ -173,14 +188,14 @@ class Follow(Message):
     on: bool
 
 
-class Reinstate(Message):
+class Reinstate(_Message):
     """Make what is looked at the design."""
 
     type: Literal["reinstate"] = "reinstate"
     id: int
 
 
-class Hold(Message):
+class Hold(_Message):
     """Hold a node somewhere for as long as it is dragged."""
 
     type: Literal["hold"] = "hold"
@@ -188,13 +203,13 @@ class Hold(Message):
     position: Vector
 
 
-class Release(Message):
+class Release(_Message):
     """Let the dragged node go."""
 
     type: Literal["release"] = "release"
 
 
-class Received(Message):
+class Received(_Message):
     """A frame of motion was drawn; the engine may send another."""
 
     type: Literal["received"] = "received"
@@ -208,6 +223,10 @@ Request = Annotated[
     | SeekStress
     | SetValue
     | SetFramework
+    | SetSprings
+    | DropSprings
+    | SetDensity
+    | Preview
     | Undo
     | Travel
     | Save
@@ -236,7 +255,7 @@ REQUEST: TypeAdapter[Request] = TypeAdapter(Request)
 # --- events: from the engine to windows -----------------------------------------------------------
 
 
-class Figures(Message):
+class Figures(_Message):
     """Measures of the net at equilibrium."""
 
     springs: int
@@ -253,7 +272,7 @@ class Figures(Message):
     reason: str
 
 
-class HistoryLine(Message):
+class HistoryLine(_Message):
     """One action of the history."""
 
     label: str
@@ -261,29 +280,50 @@ class HistoryLine(Message):
     """Actions done once this one is, from 1."""
 
 
-class AnchorState(Message):
+class AnchorState(_Message):
     """An anchor as the design file holds it."""
 
     name: str
     node: Key
     position: Vector
+    holds: str
+    """Along which axes it is held."""
+    line: Vector | None
+    """Direction of the line on which it slides."""
+    plane: Vector | None
+    """Normal of the plane in which it slides."""
 
 
-class CellTypeChoice(Message):
+class PreviewState(_Message):
+    """What an action would do."""
+
+    springs_added: int
+    springs_removed: int
+    cells_added: int
+    cells_removed: int
+    figures: Figures
+    """Figures after it."""
+    added: list[float]
+    """Ends of the springs that would come, six numbers each [m]; empty if they are very many."""
+    removed: list[float]
+    """Ends of the springs that would go, six numbers each [m]; empty if they are very many."""
+
+
+class CellTypeChoice(_Message):
     """A cell type that the method allows."""
 
     word: str
     name: str
 
 
-class Looked(Message):
+class Looked(_Message):
     """A parent or an individual that is shown instead of the design."""
 
     generation: int
     individual: int | None
 
 
-class DocumentState(Message):
+class DocumentState(_Message):
     """The document as it is now."""
 
     type: Literal["document"] = "document"
@@ -310,11 +350,13 @@ class DocumentState(Message):
     framework: dict[str, Any]
     stiffness: float
     ring_factor: float
+    spring_groups: list[SpringGroupLine]
+    """What is said of some springs; of two that say the same of a spring, the later counts."""
     looking: Looked | None
     """What is shown instead of the design; figures and net are of that."""
 
 
-class GenerationRow(Message):
+class GenerationRow(_Message):
     """What a generation gave: its parent now, and the force differentials of its individuals."""
 
     generation: int
@@ -333,7 +375,7 @@ class GenerationRow(Message):
     """Parameters were changed after it."""
 
 
-class RunState(Message):
+class RunState(_Message):
     """The run of the document."""
 
     type: Literal["run"] = "run"
@@ -349,7 +391,7 @@ class RunState(Message):
     rows: list[GenerationRow]
 
 
-class Welcome(Message):
+class Welcome(_Message):
     """First message to a window."""
 
     type: Literal["welcome"] = "welcome"
@@ -361,20 +403,22 @@ class Welcome(Message):
 Answer = Annotated[SymmetryState | GraftPlan, Field(discriminator="type")]
 
 
-class Reply(Message):
+class Reply(_Message):
     """Answer to a request."""
 
     type: Literal["reply"] = "reply"
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
-    cells: list[Address] = Field(default_factory=list)
+    cells: list[Address] = Field(default=[])
     """Cells that the action made or changed."""
+    preview: PreviewState | None = None
+    """What was asked by `preview`."""
     answer: Answer | None = None
-    """What was asked for."""
+    """What else was asked for."""
 
 
-class Problem(Message):
+class Problem(_Message):
     """Something went wrong that no request asked for."""
 
     type: Literal["problem"] = "problem"
@@ -389,7 +433,7 @@ Event = Annotated[
 # --- headers of binary frames ---------------------------------------------------------------------
 
 
-class ArrayHeader(Message):
+class ArrayHeader(_Message):
     """One array of a frame."""
 
     name: str
@@ -397,7 +441,7 @@ class ArrayHeader(Message):
     length: int
 
 
-class NetHeader(Message):
+class NetHeader(_Message):
     """A net, as what differs from an earlier one."""
 
     frame: Literal["net"] = "net"
@@ -415,7 +459,7 @@ class NetHeader(Message):
     arrays: list[ArrayHeader]
 
 
-class MotionHeader(Message):
+class MotionHeader(_Message):
     """Where the net is, and what its springs carry."""
 
     frame: Literal["motion"] = "motion"
@@ -435,7 +479,7 @@ class MotionHeader(Message):
     arrays: list[ArrayHeader]
 
 
-class TableHeader(Message):
+class TableHeader(_Message):
     """Springs and force differentials of all individuals from a generation on."""
 
     frame: Literal["table"] = "table"
@@ -451,14 +495,14 @@ Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="f
 # --- what is fetched ------------------------------------------------------------------------------
 
 
-class SceneEntry(Message):
+class SceneEntry(_Message):
     """A packaged scene."""
 
     name: str
     description: str
 
 
-class DocumentEntry(Message):
+class DocumentEntry(_Message):
     """A document that was worked on before."""
 
     id: str
@@ -469,32 +513,32 @@ class DocumentEntry(Message):
     open: bool
 
 
-class Shelf(Message):
+class Shelf(_Message):
     """What can be opened."""
 
     scenes: list[SceneEntry]
     documents: list[DocumentEntry]
 
 
-class Opening(Message):
+class Opening(_Message):
     """Ask for a new document from a scene or a design file."""
 
     source: Annotated[str, Field(min_length=1, max_length=4000)]
 
 
-class Opened(Message):
+class Opened(_Message):
     """The document that was opened."""
 
     id: str
 
 
-class Refusal(Message):
+class Refusal(_Message):
     """Why something that was fetched is refused."""
 
     problem: str
 
 
-class Protocol(Message):
+class Protocol(_Message):
     """All of them, for the generator."""
 
     request: Request

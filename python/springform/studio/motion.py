@@ -236,6 +236,7 @@ def with_held(network: Network, positions: Floats, held: Mapping[int, Floats]) -
     other.positions = placed
     other.fixed_axes = axes
     other.fixed = np.asarray(axes.all(axis=1))
+    other.slides = [slide for slide in free.slides if slide[0] not in held]
     return other
 
 

@@ -9,6 +9,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import uvicorn
 from pydantic import BaseModel, ValidationError
@@ -24,6 +25,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .. import _core, scenes
 from ..design import load
 from ..errors import InputError
+from .exports import export
 from .library import Library
 from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
 from .session import Session
@@ -93,6 +95,7 @@ def application(library: Library, token: str, port: int) -> Starlette:
             Route("/api/documents", _answering(_open), methods=["POST"]),
             Route("/api/documents/{document}", _answering(_document)),
             Route("/api/documents/{document}/run", _answering(_table)),
+            Route("/api/documents/{document}/export/{name}", _answering(_export)),
             Route(
                 "/api/documents/{document}/run/{generation:int}/{individual:int}",
                 _answering(_individual),
@@ -274,6 +277,19 @@ async def _table(request: Request) -> Response:
     first = request.query_params.get("from", "1")
     table = session.table(int(first) if first.isdecimal() else 1)
     return Response(table, media_type="application/octet-stream")
+
+
+async def _export(request: Request) -> Response:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    name = request.path_params["name"]
+    content, suffix, media_type = await asyncio.to_thread(export, session.shown, name)
+    file = f"{session.shown.name.replace(' ', '-')}{suffix}"
+    headers = {
+        "content-disposition": f"attachment; filename*=UTF-8''{quote(file)}",
+        "cache-control": "no-store",
+    }
+    return Response(content, media_type=media_type, headers=headers)
 
 
 async def _individual(request: Request) -> Response:

@@ -21,6 +21,7 @@ from ..errors import InputError, SpringformError
 from ..patch_file import Origin
 from . import commands, grafts, journal
 from .changes import Action, values_of
+from .document import Document
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
 from .graft_messages import (
@@ -47,6 +48,8 @@ from .messages import (
     Look,
     Looked,
     Move,
+    Preview,
+    PreviewState,
     Problem,
     Received,
     Reinstate,
@@ -64,6 +67,8 @@ from .messages import (
 )
 from .motion import Motion, State
 from .patches import PatchFolder
+from .preview import preview_of
+from .spring_groups import group_lines
 from .telling import cell_types_of, figures_of, motion_frame, picture_of
 
 _FRAMES_ON_THE_WAY = 3
@@ -146,6 +151,11 @@ class Session:
         """The design now."""
         return self._journal.document.design
 
+    @property
+    def shown(self) -> Design:
+        """The design, or the individual that is shown instead."""
+        return self.design if self._looking is None else self._looking[1]
+
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
@@ -204,6 +214,9 @@ class Session:
             window.tell(Problem(message=f"not understood: {place}: {first['msg']}"))
             return
         try:
+            if isinstance(request, Preview):
+                self._answer(window, request, preview=await self._preview(request))
+                return
             cells, answer = await self._do(window, request)
         except SpringformError as error:
             self._answer(window, request, problem=str(error))
@@ -307,6 +320,17 @@ class Session:
         cells = await self._in_thread(done)
         await self._show()
         return cells
+
+    async def _preview(self, request: Preview) -> PreviewState:
+        self._check_design_is_shown()
+        # A copy of its own, so that actions need not wait for what is only looked at.
+        document, positions = Document(self.design), self._now()
+
+        def look() -> PreviewState:
+            action, _ = commands.action_of(document.design, request.action, positions)
+            return preview_of(document, action, positions)
+
+        return await asyncio.to_thread(look)
 
     async def _travel(self, position: int) -> None:
         self._check_design_is_shown()
@@ -575,20 +599,28 @@ class Session:
             before=self._figures.get(document.position - 1) if looked is None else None,
             looking=None if looked is None else looked[0],
             anchors=[
-                AnchorState(name=name, node=nodes[node], position=list(anchor.position))
+                AnchorState(
+                    name=name,
+                    node=nodes[node],
+                    position=list(anchor.position),
+                    holds=anchor.holds,
+                    line=None if anchor.line is None else list(anchor.line),
+                    plane=None if anchor.plane is None else list(anchor.plane),
+                )
                 for name, node, anchor in anchors
             ],
             cell_types=cell_types_of(design),
             framework=values["framework"],
             stiffness=values["springs"]["stiffness"],
             ring_factor=values["springs"]["ring_factor"],
+            spring_groups=group_lines(design),
         )
 
     def _take_design(self) -> None:
         if self._journal.document.position not in self._figures:
             self._measure()
         self._revision += 1
-        design = self.design if self._looking is None else self._looking[1]
+        design = self.shown
         self._node_keys = set(design.nodes)
         self._nets[self._revision] = (design, tables_of(design))
         self._nets.pop(self._revision - _NETS_KEPT, None)

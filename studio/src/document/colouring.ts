@@ -5,6 +5,7 @@ import {
   brokenColour,
   type Colour,
   kindColour,
+  noneColour,
   type PaletteId,
   slackColour,
   type Theme,
@@ -34,6 +35,8 @@ export interface ScaleLegend {
   least: number;
   most: number;
   slack: number;
+  /** Springs that don't have it, such as strain without an unstressed length. */
+  none: number;
   broken: number;
 }
 
@@ -84,13 +87,17 @@ export function colouringOf(
     least: Number.POSITIVE_INFINITY,
     most: Number.NEGATIVE_INFINITY,
     slack: 0,
+    none: 0,
     broken: 0,
   };
   let largest = 0;
   for (const force of motion.forces) largest = Math.max(largest, Math.abs(force));
   for (let spring = 0; spring < values.length; spring++) {
     const value = values[spring];
-    if (!Number.isFinite(value)) {
+    if (!Number.isFinite(value) && Number.isFinite(motion.forces[spring])) {
+      legend.none++;
+      colours.set(noneColour(theme), 3 * spring);
+    } else if (!Number.isFinite(value)) {
       legend.broken++;
       colours.set(brokenColour(theme), 3 * spring);
     } else if (Math.abs(motion.forces[spring]) <= SLACK_SHARE * largest) {

@@ -22,8 +22,10 @@ export interface Net {
   springPart: Uint8Array;
   /** 1 along a free ring or rim, (m). */
   springRing: Uint8Array;
-  /** 0 stiffness, 1 constant force, 2 measured curve, 3 link of a rod, (m). */
+  /** Number in `laws`, (m). */
   law: Uint8Array;
+  /** 0 pulls only, 1 pulls and pushes, 2 pushes only, (m). */
+  sense: Uint8Array;
   /** Cross-section, 0 where unknown, (m) [m2]. */
   area: Float32Array;
   /** (m) [N/m]. */
@@ -75,6 +77,7 @@ export function applyNet(before: Net | null, header: NetHeader, arrays: Arrays):
     springPart: bytes(springRuns, base?.springPart, "spring_part"),
     springRing: bytes(springRuns, base?.springRing, "spring_ring"),
     law: bytes(springRuns, base?.law, "spring_law"),
+    sense: bytes(springRuns, base?.sense, "spring_sense"),
     area: floats(base?.area, "area"),
     stiffness: floats(base?.stiffness, "stiffness"),
     restLength: floats(base?.restLength, "rest_length"),

@@ -28,6 +28,7 @@ const KIND_COLOURS: Record<Theme, string[]> = {
 };
 
 const SLACK: Record<Theme, Colour> = { dark: [92, 101, 114], light: [170, 178, 188] };
+const NONE: Record<Theme, Colour> = { dark: [50, 57, 70], light: [208, 213, 220] };
 const BROKEN: Record<Theme, Colour> = { dark: [255, 77, 79], light: [214, 32, 36] };
 
 /** Red, green and blue, 0 to 255. */
@@ -85,7 +86,12 @@ export function slackColour(theme: Theme): Colour {
   return SLACK[theme];
 }
 
-/** Springs whose value is undefined. */
+/** Springs that don't have what is shown. */
+export function noneColour(theme: Theme): Colour {
+  return NONE[theme];
+}
+
+/** Springs whose force is undefined. */
 export function brokenColour(theme: Theme): Colour {
   return BROKEN[theme];
 }

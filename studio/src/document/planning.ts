@@ -2,7 +2,7 @@
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
 import { grafting, type Place, putAway } from "./grafting";
 import { NOTHING } from "./selection";
-import { ask, notify, query, select, store } from "./store";
+import { ask, askQuietly, notify, select, store } from "./store";
 
 /** Selects what words say, or a selection grown by some rings. */
 export async function selectBy(
@@ -12,7 +12,7 @@ export async function selectBy(
   const { selection } = store.getState();
   const before = adding && selection.kind === "cells" ? selection.keys : [];
   try {
-    const { cells } = await query({
+    const { cells } = await askQuietly({
       type: "select_cells",
       words: null,
       cells: [],
@@ -75,7 +75,7 @@ export function listPatches(): void {
 /** Reads which symmetries there are. */
 export async function readSymmetry(): Promise<void> {
   try {
-    const { answer } = await query({ type: "ask_symmetry" });
+    const { answer } = await askQuietly({ type: "ask_symmetry" });
     grafting.setState({ symmetry: answer as SymmetryState });
   } catch {
     grafting.setState({ symmetry: null });
@@ -129,7 +129,7 @@ export async function plan(): Promise<void> {
   }
   asking = true;
   try {
-    const { answer } = await query({
+    const { answer } = await askQuietly({
       type: "plan_graft",
       measure: pinned || place === "anchors",
       ...wanted,

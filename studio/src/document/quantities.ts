@@ -39,7 +39,7 @@ export const QUANTITIES: Quantity[] = [
     name: "Force",
     symbol: "F",
     unit: "N",
-    formula: "F = k (L − r)",
+    formula: "tension positive",
     values: (_, motion) => motion.forces,
   },
   {
@@ -66,7 +66,7 @@ export const QUANTITIES: Quantity[] = [
     name: "Strain",
     symbol: "ε",
     unit: "",
-    formula: "ε = (L − r) / r",
+    formula: "ε = (L − L0) / L0",
     applies: (net) => net.restLength.some((rest) => rest > 0),
     values: (net, motion) => {
       const lengths = lengthsOf(net, motion);
@@ -160,4 +160,9 @@ function springTypes(net: Net): { numbers: Uint8Array; names: string[] } {
   const found = { numbers, names: words.map((word) => `Type ${word}`) };
   typesOfNets.set(net, found);
   return found;
+}
+
+/** What a quantity is, in a line. */
+export function formulaText({ symbol, formula }: Quantity): string {
+  return formula.startsWith(symbol) ? formula : `${symbol}: ${formula}`;
 }

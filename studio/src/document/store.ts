@@ -2,19 +2,21 @@
 import { createStore } from "zustand/vanilla";
 import { type Asking, Connection, type Telling } from "../protocol/connection";
 import type { Frame } from "../protocol/frames";
-import type { DocumentState, Protocol, Reply, RunState } from "../protocol/messages";
+import type { DocumentState, PreviewState, Protocol, Reply, RunState } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
 import { grafting } from "./grafting";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
 import { type Individuals, moreIndividuals, NO_INDIVIDUALS, type Run, withMessage } from "./run";
+import type { Section } from "./section";
 import { NOTHING, type Selection, stillThere } from "./selection";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
 export type ToolId =
   | "pull"
   | "subdivide"
+  | "retype"
   | "cut"
   | "add"
   | "box"
@@ -29,12 +31,21 @@ export type ToolId =
 /** How the net is shown. */
 export interface View {
   colour: ColourChoice;
-  /** Whether springs are drawn thicker the more force they carry. */
+  /** Whether springs are drawn thicker the more they have of what they are coloured by. */
   thickness: boolean;
   cells: boolean;
   nodes: boolean;
   anchors: boolean;
   reactions: boolean;
+  section: Section | null;
+}
+
+/** What an action would do, while somebody considers it. */
+export interface Preview {
+  label: string;
+  /** null: it can't be done. */
+  state: PreviewState | null;
+  problem: string;
 }
 
 /** What the pointer is over, and where on the page [px]. */
@@ -60,9 +71,12 @@ export interface State {
   individuals: Individuals;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
+  preview: Preview | null;
   selection: Selection;
   hover: Hover | null;
   tool: ToolId;
+  /** Type that the brush gives to cells. */
+  brushType: string;
   view: View;
   theme: Theme;
   /** Label of what the engine is busy with; empty if it answers at once. */
@@ -78,6 +92,7 @@ const VIEW: View = {
   nodes: false,
   anchors: true,
   reactions: false,
+  section: null,
 };
 
 const KEPT = "springform view";
@@ -107,9 +122,11 @@ export const store = createStore<State>()(() => ({
   run: null,
   individuals: NO_INDIVIDUALS,
   gallery: false,
+  preview: null,
   selection: NOTHING,
   hover: null,
   tool: "pull",
+  brushType: "6",
   busy: "",
   notice: null,
   ...keptView(),
@@ -133,6 +150,7 @@ export function openDocument(id: string): void {
     motion: null,
     run: null,
     individuals: NO_INDIVIDUALS,
+    preview: null,
     selection: NOTHING,
     hover: null,
     busy: "",
@@ -171,8 +189,8 @@ export async function ask(request: Asking, label = "Working"): Promise<Reply | n
   }
 }
 
-/** Asks the engine for something that changes nothing. Rejects with what it says is wrong. */
-export async function query(request: Asking): Promise<Reply> {
+/** Asks the engine something that nobody waits for; throws `Error` with its problem. */
+export async function askQuietly(request: Asking): Promise<Reply> {
   if (!connection) throw new Error("no document is open");
   return connection.ask(request);
 }
@@ -243,6 +261,7 @@ function takeFrame({ header, arrays }: Frame): void {
       net: next,
       motion: null,
       hover: null,
+      preview: null,
       selection: stillThere(selection, next),
     });
     return;

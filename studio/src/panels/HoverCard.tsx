@@ -1,14 +1,12 @@
 // What the pointer is on: a spring with its force, length, rest length and formula; a node; a cell.
+import { formulaOf, lawOf, SENSES } from "../document/laws";
 import { groupOf, springCells } from "../document/net";
 import { lengthsOf, stressOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
 import { useStudio } from "./use";
 
-/** Formulas by number of the law. */
-const LAWS = ["F = k (L − r)", "F = T", "F = EA(ε) ε", "F = k (L − r)"];
-
-const WIDTH = 236; // px
-const HEIGHT = 170; // px
+const WIDTH = 252; // px
+const HEIGHT = 210; // px
 
 export function HoverCard() {
   const hover = useStudio((state) => state.hover);
@@ -37,32 +35,38 @@ export function SpringCard({ spring }: { spring: number }) {
   const force = motion.forces[spring];
   const length = lengthsOf(net, motion)[spring];
   const rest = net.restLength[spring];
-  const stiffness = net.stiffness[spring];
-  const constant = net.constantForce[spring];
+  const law = lawOf(net, spring);
   const ends = [net.nodes[net.ends[2 * spring]], net.nodes[net.ends[2 * spring + 1]]];
   const cells = [...groupOf(springCells(net), spring)].map((cell) => net.addresses[cell]);
-  const law = LAWS[net.law[spring]];
   return (
     <>
       <header>
-        <b>{net.law[spring] === 3 ? "Rod" : "Spring"}</b>
+        <b>{law.key === "rod" ? "Rod" : "Spring"}</b>
         <span>
           {ends[0]} – {ends[1]}
         </span>
       </header>
       <Line name="Force" symbol="F" value={force} unit="N" strong />
       <Line name="Length" symbol="L" value={length} unit="m" />
-      <Line name="Rest length" symbol="r" value={rest} unit="m" />
-      <Line name="Stiffness" symbol="k" value={stiffness} unit="N/m" />
-      {constant !== 0 && <Line name="Constant force" symbol="T" value={constant} unit="N" />}
+      {law.elastic && <Line name="Unstressed length" symbol="L0" value={rest} unit="m" />}
+      <Line
+        name={law.constant.name}
+        symbol={law.constant.symbol}
+        value={law.value(net, spring)}
+        unit={law.constant.unit}
+      />
       {rest > 0 && <Line name="Strain" symbol="ε" value={(length - rest) / rest} unit="" />}
       {net.area[spring] > 0 && (
         <Line name="Stress" symbol="σ" value={stressOf(force, net.area[spring])} unit="N/mm²" />
       )}
       <Line name="Force density" symbol="q" value={force / length} unit="N/m" />
       <footer>
-        <code>{law}</code>
-        <span>{cells.length ? `cell ${cells.join(", ")}` : "no cell"}</span>
+        <code>{formulaOf(net, spring)}</code>
+        <span>{SENSES[net.sense[spring]].name}</span>
+      </footer>
+      <footer>
+        <span>{law.constant.symbol === "EA" ? "EA of the unstressed length L0" : ""}</span>
+        <span>{cells.length ? `cell ${cells.slice(0, 2).join(", ")}` : "no cell"}</span>
       </footer>
     </>
   );

@@ -1,12 +1,13 @@
 // The panels at the right.
 import { Tabs } from "radix-ui";
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { CellTree } from "./CellTree";
 import { EvolvePanel } from "./EvolvePanel";
 import { FrameworkPanel } from "./FrameworkPanel";
 import { GraftPanel } from "./GraftPanel";
 import { HistoryPanel } from "./HistoryPanel";
 import { NetPanel } from "./NetPanel";
+import { useStudio } from "./use";
 
 const PANELS = [
   { id: "net", name: "Net", Panel: NetPanel },
@@ -19,8 +20,14 @@ const PANELS = [
 
 export function Inspector() {
   const [panel, setPanel] = useState("net");
+  const selection = useStudio((state) => state.selection);
+  const aside = useRef<HTMLElement>(null);
+  // What was just selected stands at the top of its panel.
+  useEffect(() => {
+    if (selection.keys.length) aside.current?.querySelector(".panel-net")?.scrollTo({ top: 0 });
+  }, [selection]);
   return (
-    <aside className="inspector" aria-label="Panels">
+    <aside className="inspector" aria-label="Panels" ref={aside}>
       <Tabs.Root value={panel} onValueChange={setPanel}>
         <Tabs.List className="tabs" aria-label="Panels">
           {PANELS.map(({ id, name }) => (

@@ -1,16 +1,29 @@
 // What the colours mean, and the choice of what they show.
 import { SlidersHorizontal } from "lucide-react";
 import { Popover } from "radix-ui";
-import { useEffect, useMemo, useState } from "react";
+import { useMemo } from "react";
 import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
-import { brokenColour, cssColour, cssGradient, PALETTES, slackColour } from "../document/palettes";
-import { KINDS, QUANTITIES, type QuantityId, quantityOf } from "../document/quantities";
+import { formulaOf, shared } from "../document/laws";
+import {
+  brokenColour,
+  cssColour,
+  cssGradient,
+  noneColour,
+  PALETTES,
+  slackColour,
+} from "../document/palettes";
+import {
+  formulaText,
+  KINDS,
+  QUANTITIES,
+  type QuantityId,
+  quantityOf,
+} from "../document/quantities";
 import { inDigits, type RangeMode, valueAt } from "../document/scale";
-import { changeColour, store } from "../document/store";
+import { changeColour } from "../document/store";
+import { largestReaction } from "../viewport/arrows";
 import { Choice, Hint, NumberField } from "./parts";
-import { useStudio } from "./use";
-
-const EVERY = 100; // ms; the legend need not follow every frame
+import { useCalmMotion, useStudio } from "./use";
 
 export function Legend() {
   const motion = useCalmMotion();
@@ -42,36 +55,21 @@ export function Legend() {
         {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
       </header>
       {legend.shows === "scale" ? <ScaleBar legend={legend} /> : <KindList legend={legend} />}
+      <Arrow />
     </section>
   );
-}
-
-/** The motion now, at most every tenth of a second. */
-function useCalmMotion() {
-  const [motion, setMotion] = useState(store.getState().motion);
-  useEffect(() => {
-    let timer = 0;
-    const stop = store.subscribe((state, before) => {
-      if (state.motion === before.motion || timer) return;
-      timer = window.setTimeout(() => {
-        timer = 0;
-        setMotion(store.getState().motion);
-      }, EVERY);
-    });
-    return () => {
-      stop();
-      clearTimeout(timer);
-    };
-  }, []);
-  return motion;
 }
 
 function ScaleBar({ legend }: { legend: ScaleLegend }) {
   const colour = useStudio((state) => state.view.colour);
   const theme = useStudio((state) => state.theme);
-  const { scale, least, most, slack, broken } = legend;
+  const { scale, least, most, slack, none, broken } = legend;
   const quantity = quantityOf(colour.by)!;
   const unit = quantity.unit && ` ${quantity.unit}`;
+  const net = useStudio((state) => state.net)!;
+  const law = shared(net.law, (number) => number);
+  const one = quantity.id === "force" && law !== null && net.law.length > 0;
+  const formula = one ? formulaOf(net, 0) : formulaText(quantity);
   const below = least < scale.low * (1 - 1e-6);
   const above = most > scale.high * (1 + 1e-6);
   return (
@@ -90,7 +88,7 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
         </span>
       </div>
       <footer>
-        <code>{quantity.formula}</code>
+        <code>{formula}</code>
         <span>
           {[
             scale.logarithmic && "log",
@@ -108,10 +106,31 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
           count={slack}
         />
       )}
+      {none > 0 && (
+        <Entry
+          colour={cssColour(noneColour(theme))}
+          name={`no ${quantity.name.toLowerCase()}`}
+          count={none}
+        />
+      )}
       {broken > 0 && (
-        <Entry colour={cssColour(brokenColour(theme))} name="undefined" count={broken} />
+        <Entry colour={cssColour(brokenColour(theme))} name="broken: no force" count={broken} />
       )}
     </>
+  );
+}
+
+/** What the arrows mean, while they are shown. */
+function Arrow() {
+  const shown = useStudio((state) => state.view.reactions);
+  const motion = useCalmMotion();
+  if (!shown || !motion) return null;
+  return (
+    <div className="legend-entry reaction-entry">
+      <i />
+      <span>longest reaction</span>
+      <span>{inDigits(largestReaction(motion))} N</span>
+    </div>
   );
 }
 

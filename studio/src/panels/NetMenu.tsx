@@ -7,8 +7,8 @@ import { useStage, useStudio } from "./use";
 
 const ITEMS: Record<string, string[]> = {
   cells: ["subdivide", "off", "on", "turn"],
-  springs: ["cut"],
-  nodes: ["hold", "let-go"],
+  springs: ["cut", "same-force"],
+  nodes: ["hold", "slide-x", "slide-y", "slide-z", "let-go"],
 };
 
 export function NetMenu() {
@@ -39,9 +39,11 @@ export function NetMenu() {
             </ContextMenu.Portal>
           </ContextMenu.Sub>
         )}
-        <ContextMenu.Separator className="menu-line" />
+        {selection.keys.length > 0 && <ContextMenu.Separator className="menu-line" />}
         <Item id="fit" />
+        <Item id="section" />
         <Item id="undo" />
+        <Item id="redo" />
       </ContextMenu.Content>
     </ContextMenu.Portal>
   );

@@ -1,8 +1,13 @@
 // The net as a whole: its figures, before and after the last action, stress-seeking and settings.
 import { useState } from "react";
 import { ask } from "../document/store";
+import { DensitySection } from "./DensitySection";
+import { FilterSection } from "./FilterSection";
+import { foreseen } from "./foreseen";
 import { Choice, Fact, NumberField, Section } from "./parts";
+import { ReactionTable } from "./ReactionTable";
 import { SelectionSections } from "./SelectionSections";
+import { SpringEditor } from "./SpringEditor";
 import { useStudio } from "./use";
 
 export function NetPanel() {
@@ -10,7 +15,11 @@ export function NetPanel() {
     <>
       <SelectionSections />
       <Figures />
+      <SpringEditor />
       <StressSeeking />
+      <DensitySection />
+      <FilterSection />
+      <ReactionTable />
       <Settings />
     </>
   );
@@ -80,7 +89,16 @@ function StressSeeking() {
         onTake={(value) => setSteps(Math.min(value, 1000))}
       />
       <div className="row">
-        <button type="button" className="button" onClick={() => seek(1)}>
+        <button
+          type="button"
+          className="button"
+          {...foreseen("one step of stress-seeking", {
+            type: "seek_stress",
+            steps: 1,
+            kind: known,
+          })}
+          onClick={() => seek(1)}
+        >
           One step
         </button>
         <button type="button" className="button" onClick={() => seek(steps)}>
@@ -91,20 +109,14 @@ function StressSeeking() {
   );
 }
 
-const METHODS = [
-  { value: "recursive", name: "Recursive", explains: "Neighbours differ by one level at most." },
-  { value: "extensible", name: "Extensible", explains: "Cells of any levels meet." },
-  { value: "dynamic", name: "Dynamic", explains: "Cells of type 6 tie to every node around them." },
-];
-
 function Settings() {
-  const { method, stiffness, ring_factor } = useStudio((state) => state.document)!;
+  const { stiffness, ring_factor } = useStudio((state) => state.document)!;
   const set = (label: string, path: string[], value: unknown) =>
     ask({ type: "set_value", label, path, value }, label);
   return (
-    <Section title="All springs">
+    <Section title="Springs without a law of their own">
       <NumberField
-        label="Stiffness"
+        label="Stiffness k, F = k L"
         value={stiffness}
         unit="N/m"
         least={1e-9}
@@ -116,13 +128,6 @@ function Settings() {
         least={1e-9}
         onTake={(value) => set("Change the ring factor", ["springs", "ring_factor"], value)}
       />
-      <Choice
-        label="Filter method"
-        value={method}
-        options={METHODS}
-        onTake={(value) => set(`Use the ${value} method`, ["method"], value)}
-      />
-      <p className="explain">{METHODS.find(({ value }) => value === method)?.explains}</p>
     </Section>
   );
 }

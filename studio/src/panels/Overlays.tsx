@@ -82,6 +82,7 @@ function CommandPalette({ onClose }: { onClose(): void }) {
 const MOUSE: [string, string][] = [
   ["Drag a node", "pull the net; let go and it returns"],
   ["Drag an anchor", "move it"],
+  ["Drag an arm", "move along x, y or z"],
   ["⇧ while dragging", "up and down only"],
   ["Ctrl while dragging", "level only"],
   ["Click, ⇧ click", "select, add to the selection"],

@@ -1,12 +1,14 @@
 // What is selected: cells, a spring, or a node with its coordinates, and what can be done with it.
+import { grafting } from "../document/grafting";
 import { groupOf } from "../document/net";
 import { plainType } from "../document/quantities";
 import { selectedRows } from "../document/selection";
-import { ask } from "../document/store";
 import { commandOf, retype } from "./commands";
 import { useDialogs } from "./dialogs";
+import { foreseen } from "./foreseen";
 import { SpringCard } from "./HoverCard";
-import { Choice, Fact, Hint, NumberField, Section } from "./parts";
+import { NodeSection } from "./NodeSection";
+import { Choice, Fact, Hint, Section } from "./parts";
 import { useStage, useStudio } from "./use";
 
 export function SelectionSections() {
@@ -18,7 +20,7 @@ export function SelectionSections() {
   if (!rows.length) return null;
   if (selection.kind === "cells") return <Cells rows={rows} />;
   if (selection.kind === "springs") return <Springs rows={rows} />;
-  return rows.length === 1 ? <Node node={rows[0]} /> : null;
+  return rows.length === 1 ? <NodeSection node={rows[0]} /> : null;
 }
 
 function Cells({ rows }: { rows: number[] }) {
@@ -79,6 +81,7 @@ function Springs({ rows }: { rows: number[] }) {
         </div>
         <div className="row">
           <CommandWord id="cut" word="Cut" />
+          <CommandWord id="same-force" word="Same force" />
         </div>
       </Section>
     );
@@ -92,56 +95,11 @@ function Springs({ rows }: { rows: number[] }) {
   );
 }
 
-function Node({ node }: { node: number }) {
-  const net = useStudio((state) => state.net)!;
-  const motion = useStudio((state) => state.motion)!;
-  const anchors = useStudio((state) => state.document!.anchors);
-  const anchor = anchors.find(({ node: key }) => key === net.nodes[node]);
-  const at = [...motion.positions.subarray(3 * node, 3 * node + 3)];
-  if (!anchor) {
-    return (
-      <Section title={`Node ${net.nodes[node]}`}>
-        {["x", "y", "z"].map((axis, place) => (
-          <Fact key={axis} name={axis} value={at[place]} unit="m" />
-        ))}
-        <div className="row">
-          <CommandWord id="hold" word="Hold as an anchor" />
-        </div>
-      </Section>
-    );
-  }
-  const number = net.anchorNames.indexOf(anchor.name);
-  const reaction = motion.reactions.subarray(3 * number, 3 * number + 3);
-  const move = (axis: number, value: number) => {
-    const position = anchor.position.map((old, place) => (place === axis ? value : old));
-    ask({ type: "move_anchor", anchor: anchor.name, position }, "Moving the anchor");
-  };
-  return (
-    <Section title={`Anchor ${anchor.name}`}>
-      {["x", "y", "z"].map((axis, place) => (
-        <NumberField
-          key={axis}
-          label={axis}
-          value={anchor.position[place]}
-          unit="m"
-          onTake={(value) => move(place, value)}
-        />
-      ))}
-      <Fact name="Reaction" value={Math.hypot(...reaction)} unit="N" />
-      <Fact
-        name="along x, y, z"
-        value={[...reaction].map((part) => part.toFixed(3).replace("-", "−")).join("  ")}
-        unit="N"
-      />
-      <div className="row">
-        <CommandWord id="let-go" word="Let go" />
-      </div>
-    </Section>
-  );
-}
-
 function CommandWord({ id, word }: { id: string; word: string }) {
   const command = commandOf(id);
+  const selection = useStudio((state) => state.selection);
+  const cells = selection.kind === "cells" ? selection.keys : [];
+  const what = id === "subdivide" || id === "off" || id === "on" || id === "turn" ? id : null;
   const refused = useStudio((state) => command.refused?.(state) ?? null);
   const viewport = useStage()?.viewport ?? null;
   const dialogs = useDialogs();
@@ -151,6 +109,15 @@ function CommandWord({ id, word }: { id: string; word: string }) {
         type="button"
         className="button"
         aria-disabled={refused !== null}
+        {...(what
+          ? foreseen(command.label, {
+              type: "edit_cells",
+              what,
+              cells,
+              kind: null,
+              orbit: grafting.getState().lock,
+            })
+          : {})}
         onClick={() => refused === null && command.run({ viewport, dialogs })}
       >
         {word}

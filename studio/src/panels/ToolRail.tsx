@@ -7,6 +7,7 @@ import {
   Hand,
   LassoSelect,
   MoveVertical,
+  PaintBucket,
   Rows3,
   Scissors,
   SquareDashed,
@@ -15,7 +16,7 @@ import {
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
-import { IconButton } from "./parts";
+import { Choice, IconButton } from "./parts";
 import { useStudio } from "./use";
 
 const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
@@ -25,6 +26,7 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
     help: "Click to select. Drag a node to pull the net, an anchor to move it; Shift: up and down, Ctrl: level.",
   },
   { id: "subdivide", icon: <Brush />, help: "Brush over cells to subdivide them." },
+  { id: "retype", icon: <PaintBucket />, help: "Brush over cells to give them the type" },
   { id: "cut", icon: <Scissors />, help: "Click a spring to cut it." },
   {
     id: "add",
@@ -99,5 +101,27 @@ export function ToolRail() {
 /** What the tool in the hand does, in a line over the net. */
 export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
-  return <p className="tool-help">{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</p>;
+  return (
+    <div className="tool-help">
+      <span>{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</span>
+      {tool === "retype" && <BrushType />}
+    </div>
+  );
+}
+
+function BrushType() {
+  const types = useStudio((state) => state.document?.cell_types ?? []);
+  const wanted = useStudio((state) => state.brushType);
+  return (
+    <Choice
+      label="Type of the brush"
+      hidden
+      value={wanted}
+      options={types.map(({ word, name }) => ({
+        value: word,
+        name: word === name ? word : `${word} ${name}`,
+      }))}
+      onTake={(brushType) => store.setState({ brushType })}
+    />
+  );
 }

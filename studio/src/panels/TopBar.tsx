@@ -12,6 +12,7 @@ import {
   Undo2,
 } from "lucide-react";
 import { commandOf } from "./commands";
+import { DocumentMenu } from "./DocumentMenu";
 import { useDialogs } from "./dialogs";
 import { useGrafting } from "./GraftPanel";
 import { toggleLock } from "./graftCommands";
@@ -127,7 +128,7 @@ function Title() {
         : "kept on this machine";
   return (
     <div className="title">
-      <h1>{document.name}</h1>
+      <DocumentMenu />
       <span className={line === "open" ? "" : "warning"}>{state}</span>
     </div>
   );

@@ -3,6 +3,7 @@ import { Anchor, CircleDot, Grid2x2, Maximize, MoveUpRight, Spline } from "lucid
 import { ContextMenu } from "radix-ui";
 import { type ReactNode, useEffect, useRef, useState } from "react";
 import { positionOf } from "../document/motion";
+import { cutOf, keeps } from "../document/section";
 import { clicked, springKey } from "../document/selection";
 import { changeView, select, store } from "../document/store";
 import { Hands } from "../tools/hands";
@@ -11,7 +12,9 @@ import { Viewport } from "../viewport/scene";
 import { HoverCard } from "./HoverCard";
 import { Legend } from "./Legend";
 import { NetMenu } from "./NetMenu";
+import { PreviewCard } from "./PreviewCard";
 import { IconButton } from "./parts";
+import { SectionButton, SectionControl } from "./SectionControl";
 import { type Stage, useStage, useStudio } from "./use";
 
 /** Names of anchors are shown while they leave room for the net. */
@@ -82,7 +85,9 @@ export function ViewportPane({
       </ContextMenu.Root>
       <div className="anchor-names" ref={names} aria-hidden="true" />
       <HoverCard />
+      <PreviewCard />
       <Legend />
+      <SectionControl />
       <ViewButtons />
       {children}
     </main>
@@ -95,9 +100,12 @@ function placeNames(viewport: Viewport, layer: HTMLElement): void {
     net && motion && view.anchors && net.anchors.length <= MOST_NAMES ? net.anchors.length : 0;
   while (layer.children.length > shown) layer.lastChild!.remove();
   while (layer.children.length < shown) layer.append(document.createElement("span"));
+  const cut = motion && cutOf(view.section, motion.positions);
   for (let anchor = 0; anchor < shown; anchor++) {
     const name = layer.children[anchor] as HTMLElement;
-    const place = viewport.project(positionOf(motion!, net!.anchors[anchor]));
+    const node = net!.anchors[anchor];
+    const there = keeps(cut, motion!.positions, node);
+    const place = there ? viewport.project(positionOf(motion!, node)) : null;
     name.hidden = !place;
     if (!place) continue;
     if (name.textContent !== net!.anchorNames[anchor]) name.textContent = net!.anchorNames[anchor];
@@ -170,7 +178,7 @@ function ViewButtons() {
           <MoveUpRight />
         </IconButton>
         <IconButton
-          label="Springs as thick as their force"
+          label="Springs as thick as what they are coloured by"
           keys="W"
           side="left"
           pressed={view.thickness}
@@ -178,6 +186,7 @@ function ViewButtons() {
         >
           <Spline />
         </IconButton>
+        <SectionButton />
       </div>
     </>
   );

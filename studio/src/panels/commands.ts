@@ -1,9 +1,12 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
 import { grafting } from "../document/grafting";
-import { NOTHING, selectedRows } from "../document/selection";
+import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
+import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
+import { support } from "./NodeSection";
+import { toggleSection } from "./SectionControl";
 
 export type Group =
   | "Net"
@@ -79,6 +82,20 @@ export function seek(steps: number): void {
   const { document } = store.getState();
   const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
   ask({ type: "seek_stress", steps, kind }, `Seeking stress, ${steps} steps`);
+}
+
+const BAND = 0.1; // of the force, on each side
+
+/** Selects the springs whose force is near that of the selected one. */
+function selectSameForce(): void {
+  const { net, motion, selection } = store.getState();
+  const row = net ? selectedRows(net, selection, "springs")[0] : undefined;
+  if (!net || !motion || row === undefined) return;
+  const force = motion.forces[row];
+  const near = [...motion.forces.keys()].filter(
+    (spring) => Math.abs(motion.forces[spring] - force) <= BAND * Math.abs(force),
+  );
+  select({ kind: "springs", keys: near.map((spring) => springKey(net, spring)) });
 }
 
 const tool = (id: ToolId) => () => store.setState({ tool: id });
@@ -158,10 +175,7 @@ export const COMMANDS: Command[] = [
     keys: "H",
     refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? "it is an anchor" : null),
     run: () => {
-      ask(
-        { type: "fix_node", node: store.getState().selection.keys[0], fixed: true },
-        "Holding the node",
-      );
+      support(store.getState().selection.keys[0], "xyz");
     },
   },
   {
@@ -171,11 +185,36 @@ export const COMMANDS: Command[] = [
     keys: "Shift+H",
     refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? null : "it is no anchor"),
     run: () => {
-      ask(
-        { type: "fix_node", node: store.getState().selection.keys[0], fixed: false },
-        "Letting the anchor go",
-      );
+      support(store.getState().selection.keys[0], "free");
     },
+  },
+  {
+    id: "same-force",
+    label: "Select springs of about the same force",
+    group: "Springs and nodes",
+    refused: needsSpring,
+    run: selectSameForce,
+  },
+  {
+    id: "slide-x",
+    label: "Let the node slide along x",
+    group: "Springs and nodes",
+    refused: needsOneNode,
+    run: () => support(store.getState().selection.keys[0], "yz"),
+  },
+  {
+    id: "slide-y",
+    label: "Let the node slide along y",
+    group: "Springs and nodes",
+    refused: needsOneNode,
+    run: () => support(store.getState().selection.keys[0], "xz"),
+  },
+  {
+    id: "slide-z",
+    label: "Let the node slide along z",
+    group: "Springs and nodes",
+    refused: needsOneNode,
+    run: () => support(store.getState().selection.keys[0], "xy"),
   },
   { id: "tool-pull", label: "Select and pull", group: "Tools", keys: "V", run: tool("pull") },
   {
@@ -184,6 +223,13 @@ export const COMMANDS: Command[] = [
     group: "Tools",
     keys: "B",
     run: tool("subdivide"),
+  },
+  {
+    id: "tool-retype",
+    label: "Give types with a brush",
+    group: "Tools",
+    keys: "Shift+B",
+    run: tool("retype"),
   },
   { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
   { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
@@ -223,6 +269,34 @@ export const COMMANDS: Command[] = [
     run: ({ viewport }) => viewport?.fit("top"),
   },
   {
+    id: "view-back",
+    label: "View from the back",
+    group: "View",
+    keys: "Ctrl+1",
+    run: ({ viewport }) => viewport?.fit("back"),
+  },
+  {
+    id: "view-left",
+    label: "View from the left",
+    group: "View",
+    keys: "Ctrl+3",
+    run: ({ viewport }) => viewport?.fit("left"),
+  },
+  {
+    id: "view-bottom",
+    label: "View from below",
+    group: "View",
+    keys: "Ctrl+7",
+    run: ({ viewport }) => viewport?.fit("bottom"),
+  },
+  {
+    id: "section",
+    label: "Section through the net",
+    group: "View",
+    keys: "K",
+    run: toggleSection,
+  },
+  {
     id: "cells",
     label: "Show cells as a skin",
     group: "View",
@@ -245,7 +319,7 @@ export const COMMANDS: Command[] = [
   },
   {
     id: "thickness",
-    label: "Draw springs as thick as their force",
+    label: "Draw springs as thick as what they are coloured by",
     group: "View",
     keys: "W",
     run: () => changeView({ thickness: !store.getState().view.thickness }),
@@ -276,9 +350,20 @@ export const COMMANDS: Command[] = [
   },
   {
     id: "save",
-    label: "Save as a design file",
+    label: "Save",
     group: "Document",
     keys: "Ctrl+S",
+    run: ({ dialogs }) => {
+      if (store.getState().document?.file)
+        ask({ type: "save", path: null, replace: false }, "Saving");
+      else dialogs.open("save");
+    },
+  },
+  {
+    id: "save-as",
+    label: "Save as …",
+    group: "Document",
+    keys: "Ctrl+Shift+S",
     run: ({ dialogs }) => dialogs.open("save"),
   },
   {
@@ -287,6 +372,18 @@ export const COMMANDS: Command[] = [
     group: "Document",
     run: ({ viewport }) => viewport && exportPicture(viewport),
   },
+  {
+    id: "drawing",
+    label: "Export a drawing (SVG)",
+    group: "Document",
+    run: ({ viewport }) => viewport && exportDrawing(viewport),
+  },
+  ...MODELS.map(({ name, label }) => ({
+    id: `export-${name}`,
+    label: `Export: ${label}`,
+    group: "Document" as const,
+    run: () => void exportModel(name),
+  })),
   {
     id: "start",
     label: "Open another document",
@@ -338,15 +435,4 @@ export function commandOfKey(event: KeyboardEvent): Command | undefined {
   const same = pressed === "Backspace" ? "Delete" : pressed === "Ctrl+Y" ? "Ctrl+Shift+Z" : pressed;
   const state = store.getState();
   return COMMANDS.find(({ keys, when }) => keys === same && (when?.(state) ?? true));
-}
-
-async function exportPicture(viewport: Viewport): Promise<void> {
-  const name = store.getState().document?.name ?? "net";
-  const address = URL.createObjectURL(await viewport.picture());
-  const link = Object.assign(document.createElement("a"), {
-    href: address,
-    download: `${name}.png`,
-  });
-  link.click();
-  URL.revokeObjectURL(address);
 }

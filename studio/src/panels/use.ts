@@ -1,5 +1,5 @@
 // The store and the viewport for components.
-import { createContext, useContext } from "react";
+import { createContext, useContext, useEffect, useState } from "react";
 import { useStore } from "zustand";
 import { type State, store } from "../document/store";
 import type { Hands } from "../tools/hands";
@@ -20,4 +20,26 @@ export const StageContext = createContext<Stage | null>(null);
 
 export function useStage(): Stage | null {
   return useContext(StageContext);
+}
+
+const EVERY = 100; // ms; numbers need not follow every frame
+
+/** The motion now, at most every tenth of a second. */
+export function useCalmMotion() {
+  const [motion, setMotion] = useState(store.getState().motion);
+  useEffect(() => {
+    let timer = 0;
+    const stop = store.subscribe((state, before) => {
+      if (state.motion === before.motion || timer) return;
+      timer = window.setTimeout(() => {
+        timer = 0;
+        setMotion(store.getState().motion);
+      }, EVERY);
+    });
+    return () => {
+      stop();
+      clearTimeout(timer);
+    };
+  }, []);
+  return motion;
 }

@@ -12,6 +12,10 @@ export interface Protocol {
     | SeekStress
     | SetValue
     | SetFramework
+    | SetSprings
+    | DropSprings
+    | SetDensity
+    | Preview
     | Undo
     | Travel
     | Save
@@ -87,13 +91,25 @@ export interface MoveAnchor {
   position: number[];
 }
 /**
- * Make a base vertex an anchor where it is now, or let an anchor go.
+ * Make a base vertex an anchor where it is now, hold an anchor otherwise, or let it go.
  */
 export interface FixNode {
   type: "fix_node";
   id: number;
   node: string;
   fixed: boolean;
+  /**
+   * Along which axes it is held; it slides along the others.
+   */
+  holds: "x" | "y" | "z" | "xy" | "xz" | "yz" | "xyz";
+  /**
+   * Direction of a line on which it slides.
+   */
+  line: number[] | null;
+  /**
+   * Normal of a plane in which it slides.
+   */
+  plane: number[] | null;
 }
 /**
  * Subdivide the cell of highest inner force, a number of times.
@@ -126,6 +142,61 @@ export interface SetFramework {
   framework: {
     [k: string]: unknown;
   };
+}
+/**
+ * Say law, unstressed length, sense or section of some springs, as a group of the file does.
+ */
+export interface SetSprings {
+  type: "set_springs";
+  id: number;
+  choice: SpringChoice;
+  /**
+   * By the keys of `springs.groups`; null takes back what was said of these springs.
+   */
+  says: {
+    [k: string]: unknown;
+  };
+}
+/**
+ * Which springs: those that meet all that is said, all springs if nothing is.
+ */
+export interface SpringChoice {
+  parts: string[] | null;
+  types: (number | string)[] | null;
+  levels: number[] | null;
+  along: string[] | null;
+  /**
+   * Springs by their two node keys, such as "v1 e7:1/2".
+   */
+  pairs: string[] | null;
+}
+/**
+ * Take back all that a group says of its springs.
+ */
+export interface DropSprings {
+  type: "drop_springs";
+  id: number;
+  group: number;
+}
+/**
+ * Bring all cells of a cylinder or sheet, or of the net, to one level.
+ */
+export interface SetDensity {
+  type: "set_density";
+  id: number;
+  /**
+   * None: the whole net.
+   */
+  part: string | null;
+  level: number;
+}
+/**
+ * Tell what an action would do, and do nothing.
+ */
+export interface Preview {
+  type: "preview";
+  id: number;
+  action: EditCells | EditSpring | SeekStress | SetDensity | SetValue | SetSprings;
 }
 /**
  * Undo the last action, or redo the one that was undone last.
@@ -411,6 +482,10 @@ export interface DocumentState {
   stiffness: number;
   ring_factor: number;
   /**
+   * What is said of some springs; of two that say the same of a spring, the later counts.
+   */
+  spring_groups: SpringGroupLine[];
+  /**
    * What is shown instead of the design; figures and net are of that.
    */
   looking: Looked | null;
@@ -453,6 +528,18 @@ export interface AnchorState {
    * @maxItems 3
    */
   position: number[];
+  /**
+   * Along which axes it is held.
+   */
+  holds: string;
+  /**
+   * Direction of the line on which it slides.
+   */
+  line: number[] | null;
+  /**
+   * Normal of the plane in which it slides.
+   */
+  plane: number[] | null;
 }
 /**
  * A cell type that the method allows.
@@ -460,6 +547,19 @@ export interface AnchorState {
 export interface CellTypeChoice {
   word: string;
   name: string;
+}
+/**
+ * A group of springs of the design file, for people.
+ */
+export interface SpringGroupLine {
+  /**
+   * Which springs.
+   */
+  title: string;
+  /**
+   * What of them.
+   */
+  says: string;
 }
 /**
  * A parent or an individual that is shown instead of the design.
@@ -593,9 +693,48 @@ export interface Reply {
    */
   cells: string[];
   /**
-   * What was asked for.
+   * What was asked by `preview`.
+   */
+  preview: PreviewState | null;
+  /**
+   * What else was asked for.
    */
   answer: (SymmetryState | GraftPlan) | null;
+}
+/**
+ * What an action would do.
+ */
+export interface PreviewState {
+  springs_added: number;
+  springs_removed: number;
+  cells_added: number;
+  cells_removed: number;
+  figures: Figures1;
+  /**
+   * Ends of the springs that would come, six numbers each [m]; empty if they are very many.
+   */
+  added: number[];
+  /**
+   * Ends of the springs that would go, six numbers each [m]; empty if they are very many.
+   */
+  removed: number[];
+}
+/**
+ * Measures of the net at equilibrium.
+ */
+export interface Figures1 {
+  springs: number;
+  nodes: number;
+  cells: number;
+  force_differential: number | null;
+  force_min: number;
+  force_max: number;
+  force_mean: number;
+  total_length: number;
+  area: number;
+  shortest_spring: number;
+  converged: boolean;
+  reason: string;
 }
 /**
  * The symmetries of the framework.

@@ -1,4 +1,4 @@
-// Brush: every cell that the pointer passes is subdivided when the button comes up.
+// Brush: every cell that the pointer passes is subdivided, or given a type, when the button comes up.
 import { grafting } from "../document/grafting";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
@@ -8,6 +8,8 @@ import type { Pointer, Tool } from "./tool";
 export class Brushing implements Tool {
   readonly reach = { cells: true };
   readonly cursor = "crosshair";
+
+  constructor(private readonly what: "subdivide" | "retype") {}
 
   down(viewport: Viewport, hit: Hit | null): boolean {
     if (hit?.kind !== "cell") return false;
@@ -20,11 +22,11 @@ export class Brushing implements Tool {
   }
 
   drop(viewport: Viewport): void {
-    this.subdivide(viewport);
+    this.finish(viewport);
   }
 
   click(viewport: Viewport, _: Hit | null, __: Pointer): void {
-    this.subdivide(viewport);
+    this.finish(viewport);
   }
 
   hover(): void {}
@@ -39,14 +41,14 @@ export class Brushing implements Tool {
     viewport.redraw(true);
   }
 
-  private subdivide(viewport: Viewport): void {
-    const { net } = store.getState();
+  private finish(viewport: Viewport): void {
+    const { net, brushType } = store.getState();
     const cells = net ? [...viewport.brushed].map((row) => net.addresses[row]) : [];
     this.cancel(viewport);
     if (!cells.length) return;
-    ask(
-      { type: "edit_cells", what: "subdivide", cells, kind: null, orbit: grafting.getState().lock },
-      "Subdividing",
-    );
+    const kind = this.what === "retype" ? brushType : null;
+    const label = this.what === "retype" ? "Changing types" : "Subdividing";
+    const orbit = grafting.getState().lock;
+    ask({ type: "edit_cells", what: this.what, cells, kind, orbit }, label);
   }
 }

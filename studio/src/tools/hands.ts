@@ -15,7 +15,8 @@ const CLICK_REACH = 4; // px
 export class Hands {
   private readonly tools: Record<ToolId, Tool> = {
     pull: new Pulling(),
-    subdivide: new Brushing(),
+    subdivide: new Brushing("subdivide"),
+    retype: new Brushing("retype"),
     cut: new Cutting(),
     add: new Adding(),
     box: new Outlining(true),

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { positionOf } from "../document/motion";
 import { clicked, NOTHING, springKey } from "../document/selection";
 import { ask, select, store, tell } from "../document/store";
+import { AXES, AXIS_COLOURS, type Axis } from "../viewport/guides";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
 import type { Pointer, Tool } from "./tool";
@@ -17,6 +18,8 @@ interface Held {
   offset: [number, number];
   at: THREE.Vector3;
   moved: boolean;
+  /** The arm by which it was taken. */
+  axis: Axis | null;
 }
 
 export class Pulling implements Tool {
@@ -26,12 +29,15 @@ export class Pulling implements Tool {
 
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
     const { net, motion } = store.getState();
-    if (hit?.kind !== "node" || !net || !motion) return false;
-    const place = positionOf(motion, hit.row);
+    const arm = viewport.armUnder(pointer.x, pointer.y);
+    const node = arm?.node ?? (hit?.kind === "node" ? hit.row : null);
+    if (node === null || !net || !motion) return false;
+    const place = positionOf(motion, node);
     const seen = viewport.project(place) ?? [pointer.x, pointer.y];
-    const number = net.anchors.indexOf(hit.row);
+    const number = net.anchors.indexOf(node);
     this.held = {
-      key: net.nodes[hit.row],
+      axis: arm?.axis ?? null,
+      key: net.nodes[node],
       anchor: number < 0 ? null : net.anchorNames[number],
       start: new THREE.Vector3(...place),
       offset: [seen[0] - pointer.x, seen[1] - pointer.y],
@@ -48,12 +54,16 @@ export class Pulling implements Tool {
     if (!place) return;
     held.at.copy(place);
     held.moved = true;
+    viewport.guide = guideOf(held, pointer);
+    viewport.redraw(true);
     tell({ type: "hold", node: held.key, position: place.toArray() });
   }
 
-  drop(): void {
+  drop(viewport: Viewport): void {
     const held = this.held;
     this.held = null;
+    viewport.guide = null;
+    viewport.redraw(true);
     if (!held?.moved) return;
     if (held.anchor === null) {
       tell({ type: "release" });
@@ -67,7 +77,9 @@ export class Pulling implements Tool {
 
   click(_: Viewport, hit: Hit | null, pointer: Pointer): void {
     const { net, selection } = store.getState();
+    const byArm = this.held?.axis != null;
     this.held = null;
+    if (byArm) return;
     if (!net || !hit) {
       if (!pointer.shift) select(NOTHING);
       return;
@@ -82,11 +94,15 @@ export class Pulling implements Tool {
     select(clicked(selection, kind, key, pointer.shift || pointer.control));
   }
 
-  hover(): void {}
+  hover(viewport: Viewport, _: Hit | null, { x, y }: Pointer): void {
+    viewport.point(viewport.armUnder(x, y) ? "move" : this.cursor);
+  }
 
-  cancel(): void {
+  cancel(viewport: Viewport): void {
     if (this.held) tell({ type: "release" });
     this.held = null;
+    viewport.guide = null;
+    viewport.redraw(true);
   }
 }
 
@@ -94,7 +110,8 @@ export class Pulling implements Tool {
 function placeOf(viewport: Viewport, held: Held, pointer: Pointer): THREE.Vector3 | null {
   const ray = viewport.ray(pointer.x + held.offset[0], pointer.y + held.offset[1]);
   const forward = viewport.eye.camera.getWorldDirection(new THREE.Vector3());
-  const { start } = held;
+  const { start, axis } = held;
+  if (axis !== null) return alongAxis(ray, start, AXES[axis]);
   const normal = forward.clone();
   if (pointer.shift) normal.setZ(0);
   if (pointer.control) normal.set(0, 0, 1);
@@ -105,4 +122,27 @@ function placeOf(viewport: Viewport, held: Held, pointer: Pointer): THREE.Vector
   if (pointer.shift) place.set(start.x, start.y, place.z);
   // Near the horizon the plane is met far away.
   return place.distanceTo(start) < 20 * viewport.eye.radius ? place : null;
+}
+
+/** The place on an axis through `start` that is nearest to a ray; null where both run alike. */
+function alongAxis(
+  ray: THREE.Ray,
+  start: THREE.Vector3,
+  axis: THREE.Vector3,
+): THREE.Vector3 | null {
+  const across = ray.direction.dot(axis);
+  const spread = 1 - across * across;
+  if (spread < 1e-4) return null;
+  const between = ray.origin.clone().sub(start);
+  const along = (between.dot(axis) - across * between.dot(ray.direction)) / spread;
+  return start.clone().addScaledVector(axis, along);
+}
+
+/** Lines along which what is held moves now. */
+function guideOf({ start, axis }: Held, { shift, control }: Pointer) {
+  const colour = AXIS_COLOURS[axis ?? 2];
+  if (axis !== null) return { at: start, along: [AXES[axis]], colour };
+  if (shift) return { at: start, along: [AXES[2]], colour };
+  if (control) return { at: start, along: [AXES[0], AXES[1]], colour };
+  return null;
 }

@@ -2,13 +2,16 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-export type StandardView = "perspective" | "front" | "right" | "top";
+export type StandardView = "perspective" | "front" | "back" | "left" | "right" | "top" | "bottom";
 
 const DIRECTIONS: Record<StandardView, [number, number, number]> = {
   perspective: [0.62, -1, 0.42],
   front: [0, -1, 0],
+  back: [0, 1, 0],
+  left: [-1, 0, 0],
   right: [1, 0, 0],
   top: [0, -1e-3, 1],
+  bottom: [0, -1e-3, -1],
 };
 
 const GLIDE = 260; // ms

@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import type { Motion } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
+import { type Cut, keeps } from "../document/section";
 
 /** What was hit, by its row. */
 export interface Hit {
@@ -16,7 +17,13 @@ const SPRING_REACH = 6; // px
 export class Projection {
   readonly places: Float32Array;
 
-  constructor(motion: Motion, camera: THREE.Camera, width: number, height: number) {
+  constructor(
+    motion: Motion,
+    camera: THREE.Camera,
+    width: number,
+    height: number,
+    cut: Cut | null = null,
+  ) {
     const matrix = new THREE.Matrix4().multiplyMatrices(
       camera.projectionMatrix,
       camera.matrixWorldInverse,
@@ -29,7 +36,8 @@ export class Projection {
       const y = positions[at + 1];
       const z = positions[at + 2];
       const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-      const front = w > 1e-9;
+      // What a section takes away can't be seen, as if it were behind the eye.
+      const front = w > 1e-9 && keeps(cut, positions, at / 3);
       this.places[at] = front
         ? ((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) * 0.5 * width
         : -1e6;

@@ -2,24 +2,31 @@
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
 import { grafting } from "../document/grafting";
-import { positionOf } from "../document/motion";
+import { type Motion, positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
 import { type Colour, kindColour } from "../document/palettes";
-import { plainType } from "../document/quantities";
+import { plainType, quantityOf } from "../document/quantities";
+import { placeOn, scaleOf } from "../document/scale";
+import { type Cut, clipped, cutOf, keeps, type Lines } from "../document/section";
 import { selectedRows } from "../document/selection";
 import { type State, store } from "../document/store";
+import { arrowsOf } from "./arrows";
 import { Eye, type StandardView } from "./camera";
+import { type Axis, armedNode, armLength, armUnder, type Guide, guideLines } from "./guides";
 import { Hairlines } from "./hairlines";
 import { type Hit, Projection, pick } from "./picking";
 import { type Disc, Discs } from "./points";
 import { Ribbons } from "./ribbons";
 import { Skin } from "./skin";
+import { type Legend, svgOf } from "./vector";
 
 const GROUND: Record<State["theme"], string> = { dark: "#0e1117", light: "#f6f7f9" };
 const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22, 26, 33] };
 const ANCHOR: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [30, 36, 45] };
 const ARROW: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
 const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
+const COMING: Record<State["theme"], Colour> = { dark: [76, 195, 138], light: [21, 128, 79] };
+const GOING: Record<State["theme"], Colour> = { dark: [255, 77, 79], light: [214, 32, 36] };
 
 const GHOST: Record<State["theme"], Colour> = { dark: [86, 214, 170], light: [10, 122, 84] };
 
@@ -46,6 +53,8 @@ export class Viewport {
   onDraw: () => void = () => {};
   /** A line from a node to a place, such as a spring that is being added. */
   rubber: { from: [number, number, number]; to: [number, number, number] } | null = null;
+  /** Directions along which what is dragged moves. */
+  guide: Guide | null = null;
   /** Cells under the brush. */
   brushed = new Set<number>();
   colouring: Colouring | null = null;
@@ -57,7 +66,9 @@ export class Viewport {
   private readonly hairlines = new Hairlines();
   private readonly marked = new Ribbons({ lift: 0.0003, order: 2, haze: 0 });
   private readonly arrows = new Ribbons({ lift: 0.0002, order: 2, haze: 0.2 });
-  private readonly ghost = new Ribbons({ lift: 0.0006, order: 3, haze: 0 });
+  private readonly ghost = new Ribbons({ lift: 0.0004, order: 2, haze: 0.2 });
+  private readonly guides = new Ribbons({ lift: 0.02, order: 3, haze: 0 });
+  private readonly patch = new Ribbons({ lift: 0.0006, order: 3, haze: 0 });
   private readonly skin = new Skin(0.16);
   private readonly markedSkin = new Skin(0.34);
   private readonly discs = new Discs();
@@ -85,7 +96,7 @@ export class Viewport {
     this.scene.fog = new THREE.Fog(0, 0, 1);
     const { mesh } = this.ribbons;
     this.scene.add(mesh, this.hairlines.lines, this.marked.mesh, this.arrows.mesh);
-    this.scene.add(this.ghost.mesh);
+    this.scene.add(this.ghost.mesh, this.guides.mesh, this.patch.mesh);
     this.scene.add(this.skin.mesh, this.markedSkin.mesh, this.discs.points);
     this.eye = new Eye(canvas, () => {
       this.lastMove = performance.now();
@@ -102,6 +113,11 @@ export class Viewport {
       for (const stop of stops) stop();
     };
     this.follow(store.getState(), null);
+  }
+
+  /** Shows what the pointer would do here. */
+  point(cursor: string): void {
+    this.canvas.style.cursor = cursor;
   }
 
   /** Draws at the next chance; `changed` says that it is not only the eye that moved. */
@@ -121,9 +137,15 @@ export class Viewport {
 
   /** What lies under a point of the canvas [px]. */
   pick(x: number, y: number, kinds: Parameters<typeof pick>[4]): Hit | null {
-    const { net, motion } = store.getState();
+    const { net, motion, view } = store.getState();
     if (!net || !motion) return null;
-    this.projection ??= new Projection(motion, this.eye.camera, this.width, this.height);
+    this.projection ??= new Projection(
+      motion,
+      this.eye.camera,
+      this.width,
+      this.height,
+      cutOf(view.section, motion.positions),
+    );
     return pick(net, this.projection, x, y, kinds);
   }
 
@@ -132,6 +154,17 @@ export class Viewport {
     const seen = new THREE.Vector3(x, y, z).project(this.eye.camera);
     if (seen.z > 1) return null;
     return [(seen.x + 1) * 0.5 * this.width, (1 - seen.y) * 0.5 * this.height];
+  }
+
+  /** The arm of the selected node under a point of the canvas [px]. */
+  armUnder(x: number, y: number): { node: number; axis: Axis } | null {
+    const state = store.getState();
+    const node = armedNode(state);
+    if (node === null) return null;
+    const place = new THREE.Vector3(...positionOf(state.motion!, node));
+    const length = armLength(this.eye.camera, place, this.height);
+    const axis = armUnder((point) => this.project(point), place, length, x, y);
+    return axis === null ? null : { node, axis };
   }
 
   /** The ray through a point of the canvas [px]. */
@@ -154,6 +187,32 @@ export class Viewport {
     });
   }
 
+  /** The picture as an SVG file: what the canvas shows, as lines. */
+  drawing(legend: Legend | null): Blob {
+    const { net, motion, theme, view } = store.getState();
+    if (!net || !motion) throw new Error("there is no net to draw");
+    const cut = cutOf(view.section, motion.positions);
+    const anchors = view.anchors
+      ? [...net.anchors]
+          .map((node, number) => ({ node, name: net.anchorNames[number] }))
+          .filter(({ node }) => keeps(cut, motion.positions, node))
+          .map(({ node, name }) => ({ at: positionOf(motion, node), name }))
+      : [];
+    const text = svgOf({
+      width: this.width,
+      height: this.height,
+      camera: this.eye.camera,
+      ground: GROUND[theme],
+      ink: `rgb(${INK[theme].join(",")})`,
+      springs: this.lines(net, motion, cut),
+      arrows: this.arrowLines(cut),
+      haze: this.eye.haze(),
+      anchors,
+      legend,
+    });
+    return new Blob([text], { type: "image/svg+xml" });
+  }
+
   dispose(): void {
     this.stop();
     this.observer.disconnect();
@@ -165,6 +224,8 @@ export class Viewport {
       this.marked,
       this.arrows,
       this.ghost,
+      this.guides,
+      this.patch,
       this.skin,
       this.markedSkin,
       this.discs,
@@ -184,7 +245,16 @@ export class Viewport {
         this.eye.fit("perspective", false);
       }
     }
-    const seen: (keyof State)[] = ["motion", "selection", "hover", "view", "theme", "document"];
+    const seen: (keyof State)[] = [
+      "motion",
+      "selection",
+      "hover",
+      "view",
+      "theme",
+      "document",
+      "tool",
+      "preview",
+    ];
     if (!before || seen.some((key) => state[key] !== before[key])) this.redraw(true);
   }
 
@@ -228,8 +298,8 @@ export class Viewport {
     fog.far = haze.y + 0.6 * (haze.y - haze.x);
     const scale = this.renderer.getPixelRatio();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    for (const ribbons of [this.ribbons, this.marked, this.arrows, this.ghost])
-      ribbons.fit(size.x, size.y, scale, this.ground, haze);
+    const every = [this.ribbons, this.marked, this.arrows, this.ghost, this.guides, this.patch];
+    for (const ribbons of every) ribbons.fit(size.x, size.y, scale, this.ground, haze);
     this.discs.fit(scale, this.ground);
     const current = net && motion && motion.header.revision === net.revision;
     if (current && (this.dirty || this.drawnRevision !== net.revision)) {
@@ -241,22 +311,29 @@ export class Viewport {
     const ribbons = fine && (!this.software || (net?.ends.length ?? 0) / 2 <= STILL_RIBBONS);
     this.ribbons.mesh.visible = ribbons && this.drawnRevision > 0;
     this.hairlines.lines.visible = !ribbons && this.drawnRevision > 0;
-    if (current) this.updateArrows(state, motion);
+    if (current) this.updateOverlays(state, motion);
     this.renderer.render(this.scene, this.eye.camera);
   }
 
   private update(state: State, net: Net, motion: NonNullable<State["motion"]>): void {
     const { view, theme } = state;
     this.colouring = colouringOf(net, motion, view.colour, theme);
-    const count = net.ends.length / 2;
-    const ends = endsOf(net, motion.positions);
-    const widths = view.thickness ? widthsOf(motion.forces) : WIDTH;
-    this.ribbons.set(count, ends, this.colouring.colours, widths);
-    this.hairlines.set(count, ends, this.colouring.colours);
-    this.updateMarks(state, net, ends);
+    const lines = this.lines(net, motion, cutOf(view.section, motion.positions));
+    this.ribbons.set(lines.count, lines.ends, lines.colours, lines.widths);
+    this.hairlines.set(lines.count, lines.ends, lines.colours);
+    this.updateMarks(state, net, endsOf(net, motion.positions));
     this.updateSkin(state, net, motion);
-    this.updateGhost(theme);
+    this.updatePatch(theme);
     this.discs.set(discsOf(state, net, motion));
+  }
+
+  /** The springs as they are seen. */
+  private lines(net: Net, motion: Motion, cut: Cut | null): Lines {
+    const { view, theme } = store.getState();
+    const { colours } = this.colouring ?? colouringOf(net, motion, view.colour, theme);
+    const widths = view.thickness ? widthsOf(net, motion, view.colour) : WIDTH;
+    const count = net.ends.length / 2;
+    return clipped(cut, { count, ends: endsOf(net, motion.positions), colours, widths });
   }
 
   private updateMarks(
@@ -290,7 +367,7 @@ export class Viewport {
   }
 
   /** Draws the cells that the patch in the hand would become, over the net. */
-  private updateGhost(theme: State["theme"]): void {
+  private updatePatch(theme: State["theme"]): void {
     const plan = grafting.getState().plan;
     const springs = plan?.springs ?? [];
     const places = new Float32Array([...springs, ...(plan?.outline ?? [])]);
@@ -299,20 +376,40 @@ export class Viewport {
     const widths = new Float32Array(count).fill(1.8);
     for (let line = 0; line < count; line++) colours.set(GHOST[theme], 3 * line);
     widths.fill(3.2, springs.length / 6);
-    this.ghost.set(count, places, colours, widths);
+    this.patch.set(count, places, colours, widths);
   }
 
-  private updateArrows({ view, theme }: State, motion: NonNullable<State["motion"]>): void {
-    const { net } = store.getState();
-    if (!view.reactions || !net) {
-      this.arrows.set(0, new Float32Array(), new Uint8Array(), 0);
-      return;
-    }
-    const arrows = arrowsOf(net, motion, this.eye.radius * ARROW_SHARE, this.eye.camera.position);
-    const count = arrows.length / 6;
+  /** Arrows, guides and ghosts, some of which keep their size on the canvas. */
+  private updateOverlays(state: State, motion: Motion): void {
+    const { view, theme, preview } = state;
+    const arrows = this.arrowLines(cutOf(view.section, motion.positions));
+    this.arrows.set(arrows.count, arrows.ends, arrows.colours, arrows.widths);
+    const { camera, radius } = this.eye;
+    const guides = guideLines(state, camera, this.height, radius, this.guide, MARK[theme]);
+    this.guides.set(
+      guides.widths.length,
+      new Float32Array(guides.ends),
+      new Uint8Array(guides.colours),
+      new Float32Array(guides.widths),
+    );
+    const { added = [], removed = [] } = preview?.state ?? {};
+    const count = (added.length + removed.length) / 6;
+    const colours = new Uint8Array(3 * count);
+    for (let line = 0; line < count; line++)
+      colours.set(6 * line < added.length ? COMING[theme] : GOING[theme], 3 * line);
+    this.ghost.set(count, new Float32Array([...added, ...removed]), colours, 2);
+  }
+
+  private arrowLines(cut: Cut | null): Lines {
+    const { view, theme, net, motion } = store.getState();
+    const ends =
+      view.reactions && net && motion
+        ? arrowsOf(net, motion, this.eye.radius * ARROW_SHARE, this.eye.camera.position, cut)
+        : new Float32Array();
+    const count = ends.length / 6;
     const colours = new Uint8Array(3 * count);
     for (let line = 0; line < count; line++) colours.set(ARROW[theme], 3 * line);
-    this.arrows.set(count, arrows, colours, 2.2);
+    return { count, ends, colours, widths: 2.2 };
   }
 
   private updateSkin(
@@ -320,7 +417,10 @@ export class Viewport {
     net: Net,
     motion: NonNullable<State["motion"]>,
   ): void {
-    const all = net.addresses.keys();
+    const cut = cutOf(view.section, motion.positions);
+    const whole = (cell: number) =>
+      groupOf(net.boundaries, cell).every((node) => keeps(cut, motion.positions, node));
+    const all = [...net.addresses.keys()].filter(whole);
     if (view.cells) this.skin.set(net, motion, all, cellColours(net, view.colour.by, theme));
     else this.skin.clear();
     const cells = new Set([...selectedRows(net, selection, "cells"), ...this.brushed]);
@@ -349,18 +449,22 @@ function endsOf(net: Net, positions: Float32Array): Float32Array {
   return ends;
 }
 
-function widthsOf(forces: Float32Array): Float32Array {
-  let largest = 0;
-  for (const force of forces) largest = Math.max(largest, Math.abs(force));
-  return forces.map(
-    (force) => THINNEST + (THICKEST - THINNEST) * (largest > 0 ? Math.abs(force) / largest : 0),
+/** Widths by what springs are coloured by; by force where that is no number. */
+function widthsOf(net: Net, motion: Motion, by: State["view"]["colour"]): Float32Array {
+  const values = (quantityOf(by.by) ?? quantityOf("force")!).values(net, motion);
+  const scale = scaleOf(values, by);
+  return values.map((value) =>
+    Number.isFinite(value) ? THINNEST + (THICKEST - THINNEST) * placeOn(scale, value) : THINNEST,
   );
 }
 
 function discsOf({ view, selection, hover, theme, motion }: State, net: Net, _: unknown): Disc[] {
   const discs: Disc[] = [];
-  const add = (node: number, colour: Colour, size: number) =>
-    discs.push({ at: positionOf(motion!, node), colour, size });
+  const cut = cutOf(view.section, motion!.positions);
+  const add = (node: number, colour: Colour, size: number) => {
+    if (keeps(cut, motion!.positions, node))
+      discs.push({ at: positionOf(motion!, node), colour, size });
+  };
   const anchors = new Set(net.anchors);
   if (view.nodes) {
     for (let node = 0; node < net.nodes.length; node++)
@@ -371,35 +475,6 @@ function discsOf({ view, selection, hover, theme, motion }: State, net: Net, _: 
   if (hover?.kind === "node") add(hover.row, MARK[theme], anchors.has(hover.row) ? 13 : 10);
   for (const node of motion!.header.held) add(node, MARK[theme], 13);
   return discs;
-}
-
-/** Arrows that pull at the anchors as the supports do: shafts and two barbs each, spread before the eye. */
-function arrowsOf(
-  net: Net,
-  { positions, reactions }: NonNullable<State["motion"]>,
-  longest: number,
-  eye: THREE.Vector3,
-): Float32Array {
-  let largest = 0;
-  const count = net.anchors.length;
-  for (let at = 0; at < 3 * count; at += 3) {
-    largest = Math.max(largest, Math.hypot(reactions[at], reactions[at + 1], reactions[at + 2]));
-  }
-  const lines = new Float32Array(18 * count);
-  const side = new THREE.Vector3();
-  for (let anchor = 0; anchor < count; anchor++) {
-    const from = new THREE.Vector3().fromArray(positions, 3 * net.anchors[anchor]);
-    const force = new THREE.Vector3().fromArray(reactions, 3 * anchor);
-    const direction = force.clone().normalize();
-    const length = largest > 0 ? (force.length() / largest) * longest : 0;
-    const tip = from.clone().addScaledVector(direction, length);
-    const head = Math.min(0.3 * length, 0.16 * longest);
-    side.crossVectors(direction, eye.clone().sub(tip)).normalize();
-    const back = tip.clone().addScaledVector(direction, -head);
-    const barbs = [1, -1].map((sign) => back.clone().addScaledVector(side, 0.5 * sign * head));
-    lines.set([...from, ...tip, ...tip, ...barbs[0], ...tip, ...barbs[1]], 18 * anchor);
-  }
-  return lines;
 }
 
 function cellColours(net: Net, by: string, theme: State["theme"]): (cell: number) => Colour {

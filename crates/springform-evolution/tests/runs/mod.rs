@@ -20,7 +20,7 @@ use springform_evolution::variation::Variation;
 use springform_mechanics::assembly::{SpringLaw, embed};
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::Measures;
-use springform_mechanics::rigging::Rigging;
+use springform_mechanics::rigging::{Law, Rest, Rigging, SpringGroup};
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::cell_type::{Catalogue, CellTypeId};
 use springform_topology::filters::Method;
@@ -47,6 +47,21 @@ impl fmt::Debug for Start {
 /// Designs after up to `edits` random edits.
 pub fn starts(edits: usize) -> impl Values<Value = Start> {
     nets(edits).prop_map(start)
+}
+
+/// The same, or all springs of a cord that has a rest length and goes slack, whose mutants start near their parent's rest.
+pub fn cords(edits: usize) -> impl Values<Value = Start> {
+    (starts(edits), 1e-3..0.2f64).prop_map(|(mut start, rest)| {
+        let group = SpringGroup {
+            law: Some(Law::Stiffness(2.0)),
+            rest: Some(Rest::Length(rest)),
+            ..SpringGroup::default()
+        };
+        start.setting.rigging.groups.push(group);
+        // What the tolerance leaves open is then less than what is compared.
+        start.setting.solver.tolerance = 1e-12;
+        start
+    })
 }
 
 fn start(Net { design, embedding, .. }: Net) -> Start {

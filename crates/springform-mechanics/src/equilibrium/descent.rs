@@ -11,19 +11,22 @@ use super::state::Settings;
 use super::supports::Supports;
 use super::tangent::{Layout, along, moduli, own_stiffness};
 use crate::network::Network;
-use crate::sparse::{Graph, Lanes, ScalarFactor};
+use crate::sparse::{Graph, Lanes, ScalarFactor, Symbolic};
 use crate::vector::length;
 use pulp::{Arch, NullaryFnOnce};
 use std::collections::VecDeque;
 
 /// Pairs of step and change of pull that are remembered.
-const MEMORY: usize = 5;
+const MEMORY: usize = 2;
 
 /// Share of the stiffness across a spring in its weight; the rest is that along it.
-const ACROSS: f64 = 0.8;
+const ACROSS: f64 = 0.7;
 
-/// Stiffness of springs across their directions, as a share of that along them, that a descent needs.
+/// Stiffness of springs across their directions, as a share of that along them, that a descent to the end needs.
 const STRONG_PRESTRESS: f64 = 0.2;
+
+/// Time of a Newton step over that of a step of descent, per multiplication and entry of the scalar factor (measured).
+const NEWTON_PER_STEP: f64 = 3.0;
 
 /// Least weight of a spring as a share of its own stiffness.
 const LEAST_WEIGHT: f64 = 0.02;
@@ -40,7 +43,6 @@ pub(super) struct Descent {
     next_pulls: Vec<Lanes>,
     next: Vec<Lanes>,
     direction: Vec<Lanes>,
-    rows: Vec<Lanes>,
     pairs: VecDeque<Pair>,
     spare: Vec<Pair>,
 }
@@ -74,12 +76,7 @@ impl Hill<'_> {
     pub(super) fn look(&self, positions: &[Lanes], pulls: &mut Vec<Lanes>) -> (State, f64) {
         let state = self.elements.evaluate(self.network, positions, pulls);
         self.supports.keep_free(pulls);
-        let mut largest = 0.0;
-        for [x, y, z, _] in pulls.iter() {
-            let square = x * x + y * y + z * z;
-            // `f64::max` would pass over what is not a number.
-            largest = if square <= largest { largest } else { square };
-        }
+        let largest = Arch::new().dispatch(Largest { vectors: pulls });
         let scale = state.mean_force.max(self.least_force);
         let residual = if largest == 0.0 { 0.0 } else { largest.sqrt() / scale };
         (state, residual)
@@ -100,17 +97,19 @@ impl Descent {
         let mut iterations = 0;
         self.spare.extend(self.pairs.drain(..));
         let first = residual;
-        while residual > settings.tolerance {
-            let lost = if iterations == 0 {
-                !self.weigh(hill, positions)
-            } else {
-                is_hopeless(iterations, residual / first)
-            };
-            if iterations >= limit || lost {
+        let (mut limit, mut weak) = (limit, false);
+        while residual > settings.tolerance && iterations < limit {
+            if iterations == 0 {
+                let Some(prestress) = self.weigh(hill, positions) else { break };
+                weak = prestress <= STRONG_PRESTRESS;
+                if weak {
+                    limit = limit.min(steps_for_shape(&hill.layout.symbolic));
+                }
+            } else if !weak && is_hopeless(iterations, residual / first) {
                 break;
             }
-            self.aim(hill, &pulls);
-            let Some((next_state, next_residual)) = self.step(hill, positions, &pulls, state) else { break };
+            let slope = self.aim(hill, &pulls);
+            let Some((next_state, next_residual)) = self.step(hill, positions, slope, state) else { break };
             self.remember(positions, &pulls);
             std::mem::swap(positions, &mut self.next);
             std::mem::swap(&mut pulls, &mut self.next_pulls);
@@ -121,9 +120,9 @@ impl Descent {
         Descended { converged: residual <= settings.tolerance, iterations }
     }
 
-    /// Factors the Laplacian of the springs' weights; false if it can't be, or if springs hold their nodes across far less
-    /// than along, so that no scalar tells the net's stiffness.
-    fn weigh(&mut self, hill: Hill<'_>, positions: &[Lanes]) -> bool {
+    /// Factors the Laplacian of the springs' weights, if it can be; the stiffness with which springs hold their nodes
+    /// across over that along. Where it is small no scalar tells the net's stiffness.
+    fn weigh(&mut self, hill: Hill<'_>, positions: &[Lanes]) -> Option<f64> {
         let Hill { network, supports, layout, .. } = hill;
         self.diagonal.clear();
         self.diagonal.resize(supports.nodes.len(), 0.0);
@@ -141,9 +140,7 @@ impl Descent {
                 self.diagonal[row as usize] += weight;
             }
         }
-        if held <= STRONG_PRESTRESS * stiff {
-            return false;
-        }
+        let prestress = if stiff > 0.0 { held / stiff } else { 0.0 };
         self.weights.resize(layout.ends.len(), 0.0);
         for (node, _) in &supports.partial {
             // Held in part: the metric holds it as a whole, about as well.
@@ -153,44 +150,25 @@ impl Descent {
             self.factor.lay_out(&layout.graph, &layout.symbolic);
             self.pattern = layout.pattern;
         }
-        self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights).is_ok()
+        let factored = self.factor.factor(&layout.graph, &layout.symbolic, &self.diagonal, &self.weights);
+        factored.is_ok().then_some(prestress)
     }
 
-    /// The direction of the next step: two loops over the pairs around the metric.
-    fn aim(&mut self, hill: Hill<'_>, pulls: &[Lanes]) {
+    /// The direction of the next step, by two loops over the pairs around the metric, and its slope.
+    fn aim(&mut self, hill: Hill<'_>, pulls: &[Lanes]) -> f64 {
         let supports = hill.supports;
         let mut shares = [0.0; MEMORY];
-        self.direction.clear();
-        self.direction.extend_from_slice(pulls);
-        Arch::new().dispatch(FirstLoop {
-            pairs: &self.pairs,
-            shares: &mut shares,
-            direction: &mut self.direction,
-        });
-        self.rows.clear();
-        self.rows.extend(supports.nodes.iter().map(|&node| self.direction[node as usize]));
-        self.factor.solve(&mut self.rows);
-        self.direction.fill([0.0; 4]);
-        for (&node, &row) in supports.nodes.iter().zip(&self.rows) {
-            self.direction[node as usize] = row;
-        }
-        supports.keep_free(&mut self.direction);
-        Arch::new().dispatch(SecondLoop {
-            pairs: &self.pairs,
-            shares: &shares,
-            direction: &mut self.direction,
-        });
+        self.direction.resize(pulls.len(), [0.0; 4]);
+        let (pairs, direction) = (&self.pairs, &mut self.direction);
+        Arch::new().dispatch(FirstLoop { pairs, shares: &mut shares, pulls, direction });
+        self.factor.solve_at(&supports.nodes, &mut self.direction);
+        supports.keep_partial(&mut self.direction);
+        let (pairs, direction) = (&self.pairs, &mut self.direction);
+        -Arch::new().dispatch(SecondLoop { pairs, shares: &shares, pulls, direction })
     }
 
     /// A step along the direction that is down enough, in `next` and `next_pulls`; `None` if there is none.
-    fn step(
-        &mut self,
-        hill: Hill<'_>,
-        positions: &[Lanes],
-        pulls: &[Lanes],
-        from: State,
-    ) -> Option<(State, f64)> {
-        let slope = -inner(pulls, &self.direction);
+    fn step(&mut self, hill: Hill<'_>, positions: &[Lanes], slope: f64, from: State) -> Option<(State, f64)> {
         if slope >= 0.0 || slope.is_nan() {
             return None;
         }
@@ -217,10 +195,14 @@ impl Descent {
     fn remember(&mut self, positions: &[Lanes], pulls: &[Lanes]) {
         let oldest = if self.pairs.len() == MEMORY { self.pairs.pop_front() } else { self.spare.pop() };
         let mut pair = oldest.unwrap_or_default();
-        sum(&mut pair.step, &self.next, -1.0, positions);
-        sum(&mut pair.change, pulls, -1.0, &self.next_pulls);
-        let curvature = inner(&pair.step, &pair.change);
-        if curvature > 1e-12 * (inner(&pair.step, &pair.step) * inner(&pair.change, &pair.change)).sqrt() {
+        pair.step.resize(positions.len(), [0.0; 4]);
+        pair.change.resize(positions.len(), [0.0; 4]);
+        let [curvature, step, change] = Arch::new().dispatch(Differences {
+            pair: &mut pair,
+            positions: [positions, &self.next],
+            pulls: [pulls, &self.next_pulls],
+        });
+        if curvature > 1e-12 * (step * change).sqrt() {
             pair.inverse = 1.0 / curvature;
             self.pairs.push_back(pair);
         } else {
@@ -232,6 +214,12 @@ impl Descent {
 /// Most shares of a direction that are tried.
 const MOST_SHARES: u32 = 12;
 
+/// Steps that are worth their time where prestress is weak: they find the shape, and Newton's steps, of which one costs
+/// as much as all of these, the digits.
+fn steps_for_shape(symbolic: &Symbolic) -> u32 {
+    (NEWTON_PER_STEP * symbolic.work() / symbolic.fill().max(1) as f64) as u32
+}
+
 /// After so many steps the residual should have fallen to a smaller share of the first.
 fn is_hopeless(iterations: u32, share: f64) -> bool {
     iterations >= 24 && share > 0.85_f64.powi(iterations as i32)
@@ -241,6 +229,7 @@ fn is_hopeless(iterations: u32, share: f64) -> bool {
 struct FirstLoop<'a> {
     pairs: &'a VecDeque<Pair>,
     shares: &'a mut [f64; MEMORY],
+    pulls: &'a [Lanes],
     direction: &'a mut [Lanes],
 }
 
@@ -249,29 +238,95 @@ impl NullaryFnOnce for FirstLoop<'_> {
 
     #[inline(always)]
     fn call(self) {
-        for (pair, share) in self.pairs.iter().zip(self.shares).rev() {
-            *share = pair.inverse * flat_inner(pair.step.as_flattened(), self.direction.as_flattened());
-            add_scaled(self.direction.as_flattened_mut(), -*share, pair.change.as_flattened());
+        let FirstLoop { pairs, shares, pulls, direction } = self;
+        direction.copy_from_slice(pulls);
+        let Some(newest) = pairs.back() else { return };
+        let mut product = flat_inner(newest.step.as_flattened(), direction.as_flattened());
+        for at in (0..pairs.len()).rev() {
+            let pair = &pairs[at];
+            shares[at] = pair.inverse * product;
+            // The oldest is multiplied once more, which is not used.
+            let older = &pairs[at.saturating_sub(1)];
+            product = add_and_multiply(direction, -shares[at], &pair.change, &older.step);
         }
     }
 }
 
-/// From the oldest pair to the newest.
+/// From the oldest pair to the newest; gives the product of pulls and direction.
 struct SecondLoop<'a> {
     pairs: &'a VecDeque<Pair>,
     shares: &'a [f64; MEMORY],
+    pulls: &'a [Lanes],
     direction: &'a mut [Lanes],
 }
 
 impl NullaryFnOnce for SecondLoop<'_> {
-    type Output = ();
+    type Output = f64;
 
     #[inline(always)]
-    fn call(self) {
-        for (pair, share) in self.pairs.iter().zip(self.shares) {
-            let other = pair.inverse * flat_inner(pair.change.as_flattened(), self.direction.as_flattened());
-            add_scaled(self.direction.as_flattened_mut(), share - other, pair.step.as_flattened());
+    fn call(self) -> f64 {
+        let SecondLoop { pairs, shares, pulls, direction } = self;
+        let first = pairs.front().map_or(pulls, |pair| pair.change.as_slice());
+        let mut product = flat_inner(first.as_flattened(), direction.as_flattened());
+        for (at, pair) in pairs.iter().enumerate() {
+            let share = shares[at] - pair.inverse * product;
+            let newer = pairs.get(at + 1).map_or(pulls, |pair| pair.change.as_slice());
+            product = add_and_multiply(direction, share, &pair.step, newer);
         }
+        product
+    }
+}
+
+/// Fills a pair: curvature, square of the step, square of the change.
+struct Differences<'a> {
+    pair: &'a mut Pair,
+    positions: [&'a [Lanes]; 2],
+    pulls: [&'a [Lanes]; 2],
+}
+
+impl NullaryFnOnce for Differences<'_> {
+    type Output = [f64; 3];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 3] {
+        let Differences { pair, positions: [positions, next], pulls: [pulls, next_pulls] } = self;
+        let mut sums = [[0.0; 4]; 3];
+        let moves = pair.step.iter_mut().zip(positions.iter().zip(next));
+        let changes = pair.change.iter_mut().zip(pulls.iter().zip(next_pulls));
+        for ((step, (from, to)), (change, (pull, next_pull))) in moves.zip(changes) {
+            for lane in 0..4 {
+                (step[lane], change[lane]) = (to[lane] - from[lane], pull[lane] - next_pull[lane]);
+                sums[0][lane] = step[lane].mul_add(change[lane], sums[0][lane]);
+                sums[1][lane] = step[lane].mul_add(step[lane], sums[1][lane]);
+                sums[2][lane] = change[lane].mul_add(change[lane], sums[2][lane]);
+            }
+        }
+        sums.map(|sum| sum.iter().sum())
+    }
+}
+
+/// Largest square of a vector.
+struct Largest<'a> {
+    vectors: &'a [Lanes],
+}
+
+impl NullaryFnOnce for Largest<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        // `f64::max` would pass over what is not a number.
+        let larger = |a: f64, b: f64| if b <= a { a } else { b };
+        let mut largest = [0.0; 4];
+        let (fours, rest) = self.vectors.as_chunks::<4>();
+        for four in fours {
+            for lane in 0..4 {
+                let [x, y, z, _] = four[lane];
+                largest[lane] = larger(largest[lane], x.mul_add(x, y.mul_add(y, z * z)));
+            }
+        }
+        let squares = rest.iter().map(|[x, y, z, _]| x.mul_add(*x, y.mul_add(*y, z * z)));
+        squares.chain(largest).fold(0.0, larger)
     }
 }
 
@@ -307,12 +362,25 @@ fn flat_inner(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// a += s b.
+/// a += s b, and the product of a with c then.
 #[inline(always)]
-fn add_scaled(a: &mut [f64], s: f64, b: &[f64]) {
-    for (a, b) in a.iter_mut().zip(b) {
-        *a = s.mul_add(*b, *a);
+fn add_and_multiply(a: &mut [Lanes], s: f64, b: &[Lanes], c: &[Lanes]) -> f64 {
+    let mut sums = [0.0; 16];
+    let (a, a_rest) = a.as_flattened_mut().as_chunks_mut::<16>();
+    let (b, b_rest) = b.as_flattened().as_chunks::<16>();
+    let (c, c_rest) = c.as_flattened().as_chunks::<16>();
+    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+        for lane in 0..16 {
+            a[lane] = s.mul_add(b[lane], a[lane]);
+            sums[lane] = a[lane].mul_add(c[lane], sums[lane]);
+        }
     }
+    let mut rest = 0.0;
+    for ((a, b), c) in a_rest.iter_mut().zip(b_rest).zip(c_rest) {
+        *a = s.mul_add(*b, *a);
+        rest = a.mul_add(*c, rest);
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// out = a + s b.

@@ -44,6 +44,11 @@ impl Supports {
                 *vector = [0.0; 4];
             }
         }
+        self.keep_partial(vectors);
+    }
+
+    /// Leaves of the vectors of nodes that are free in part what those can follow.
+    pub(super) fn keep_partial(&self, vectors: &mut [Lanes]) {
         for (node, projection) in &self.partial {
             let vector = &mut vectors[*node as usize];
             let [x, y, z] = projection.map(|row| dot(row, [vector[0], vector[1], vector[2]]));

@@ -145,13 +145,17 @@ fn base_edge(mesh: &BaseMesh, ends: [NodeKey; 2]) -> Option<u32> {
 /// Which springs lie between the nodes of a pair; pairs without a spring are passed over.
 fn between(pairs: &[NodePair], expression: &Expression) -> Vec<bool> {
     let mut chosen = vec![false; expression.springs.len()];
-    for pair in pairs {
-        let [a, b] = pair.keys().map(|key| expression.node(key));
-        let (Some(a), Some(b)) = (a, b) else { continue };
-        let ends = [a.min(b), a.max(b)];
-        if let Ok(spring) = expression.springs.binary_search_by_key(&ends, |spring| spring.nodes) {
-            chosen[spring] = true;
-        }
-    }
+    pairs
+        .iter()
+        .filter_map(|&pair| spring_between(pair, expression))
+        .for_each(|spring| chosen[spring] = true);
     chosen
+}
+
+/// The spring between two nodes; `None` while the net lacks it.
+pub(super) fn spring_between(pair: NodePair, expression: &Expression) -> Option<usize> {
+    let [a, b] = pair.keys().map(|key| expression.node(key));
+    let (a, b) = (a?, b?);
+    let ends = [a.min(b), a.max(b)];
+    expression.springs.binary_search_by_key(&ends, |spring| spring.nodes).ok()
 }

@@ -158,7 +158,6 @@ struct Elastic {
 
 /// What does not fit a spring.
 enum Unfit {
-    Prestressed,
     Unstressed(f64),
     Frozen,
 }
@@ -167,9 +166,6 @@ impl Unfit {
     fn of(self, properties: &Properties<'_>, expression: &Expression, spring: usize) -> RiggingError {
         let [a, b] = expression.springs[spring].nodes.map(|node| expression.nodes[node as usize]);
         let problem = match self {
-            Unfit::Prestressed => {
-                "has a measured curve and a prestress; give rest_length or rest_ratio".into()
-            }
             Unfit::Unstressed(length) => {
                 format!("would be {length:.3e} m long without force; its law needs another length")
             }
@@ -210,11 +206,10 @@ fn resolve(law: Law, properties: &Properties<'_>, drawn: Drawn, curves: &[Curve]
         Law::ForceDensity(density) => Elastic { stiffness: density, rest: 0.0, force: 0.0, warmer: 1.0 },
         Law::Force(force) => Elastic { stiffness: 0.0, rest: 0.0, force, warmer: 1.0 },
         Law::Curve(number) => {
-            if matches!(rest, Some(Rest::Prestress(_))) {
-                return Err(Unfit::Prestressed);
-            }
-            let rest = checked(cold(drawn.length, &|_| f64::NAN), false)?;
-            let axial = curves[number as usize].axial_stiffness();
+            let curve = &curves[number as usize];
+            let axial = curve.axial_stiffness();
+            let stretched = |force: f64| drawn.length / (1.0 + curve.strain(force / axial));
+            let rest = checked(cold(drawn.length, &stretched), false)?;
             // A measured curve keeps its axial stiffness; k r is that.
             Elastic { stiffness: axial / rest / warmer, rest: rest * warmer, force: 0.0, warmer }
         }

@@ -16,6 +16,8 @@ pub use choice::{Along, CellChoice, Line, SpringChoice};
 pub use groups::{Law, Properties, Rest, SpringGroup};
 pub use rods::BorderRod;
 
+use choice::spring_between;
+
 use crate::curve::Curve;
 use crate::equilibrium::press;
 use crate::network::{Network, NetworkError, Path, Pressure, Slide};
@@ -23,6 +25,7 @@ use crate::vector::{Vector, add};
 use springform_topology::base_mesh::{BaseMesh, Groups};
 use springform_topology::cell_type::NULL;
 use springform_topology::expression::Expression;
+use springform_topology::forest::NodePair;
 use springform_topology::node_key::NodeKey;
 use thiserror::Error;
 
@@ -31,6 +34,8 @@ use thiserror::Error;
 pub struct Rigging {
     /// Groups of springs; later ones win.
     pub groups: Vec<SpringGroup>,
+    /// Factors on the stiffness that springs have by their laws; pairs without a spring are passed over.
+    pub factors: Vec<(NodePair, f64)>,
     /// Measured curves of the groups.
     pub curves: Vec<Curve>,
     /// Rods.
@@ -121,6 +126,11 @@ impl Rigging {
         let mut weights = vec![0.0; expression.springs.len()];
         if !self.groups.is_empty() {
             self.set_laws(mesh, expression, network, &mut weights)?;
+        }
+        for &(pair, factor) in &self.factors {
+            if let Some(spring) = spring_between(pair, expression) {
+                network.stiffness.to_mut()[spring] *= factor;
+            }
         }
         for (number, rod) in self.rods.iter().enumerate() {
             rod.add(number, mesh, expression, network, &mut weights)?;

@@ -14,10 +14,12 @@ use pulp::{Arch, NullaryFnOnce};
 /// Three by three numbers, row by row.
 pub type Block = [Vector; 3];
 
-/// A block column by column, each a vector register.
-type Columns = [Lanes; 3];
+/// A block column by column, each a vector register that lies within one line of the cache.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[repr(align(32))]
+struct Columns([Lanes; 3]);
 
-const ZERO: Columns = [[0.0; 4]; 3];
+const ZERO: Columns = Columns([[0.0; 4]; 3]);
 
 /// A factor L Lᵀ of blocks and its workspace.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -98,7 +100,7 @@ impl NullaryFnOnce for Factorise<'_> {
                     let block = &self.links[link as usize];
                     let turned = self.ends[link as usize][0] == row;
                     let sum = &mut dense[below];
-                    for (column, lanes) in sum.iter_mut().enumerate() {
+                    for (column, lanes) in sum.0.iter_mut().enumerate() {
                         for lane in 0..3 {
                             lanes[lane] += if turned { block[column][lane] } else { block[lane][column] };
                         }
@@ -114,7 +116,10 @@ impl NullaryFnOnce for Factorise<'_> {
                 add_product(&mut pivot, &first, &factor);
                 let tail = entry as usize + 1..end;
                 for (&below, value) in rows[tail.clone()].iter().zip(&values[tail]) {
-                    add_product(&mut dense[below as usize], value, &factor);
+                    // In registers: memory would be written after every product.
+                    let mut sum = dense[below as usize];
+                    add_product(&mut sum, value, &factor);
+                    dense[below as usize] = sum;
                 }
             }
             let Some(root) = Root::new(&pivot) else { return Err(NotPositiveDefinite { row }) };
@@ -155,7 +160,7 @@ impl NullaryFnOnce for Substitute<'_> {
             for (&row, value) in rows[column(at)].iter().zip(&values[column(at)]) {
                 let below = sides[row as usize];
                 for lane in 0..3 {
-                    let [x, y, z, _] = value[lane];
+                    let [x, y, z, _] = value.0[lane];
                     side[lane] =
                         (-x).mul_add(below[0], (-y).mul_add(below[1], (-z).mul_add(below[2], side[lane])));
                 }
@@ -178,7 +183,7 @@ impl Root {
     /// The factor of a positive definite block; `None` of any other.
     #[inline(always)]
     fn new(a: &Columns) -> Option<Root> {
-        let [[xx, xy, xz, _], [_, yy, yz, _], [_, _, zz, _]] = *a;
+        let Columns([[xx, xy, xz, _], [_, yy, yz, _], [_, _, zz, _]]) = *a;
         let x = 1.0 / xx.sqrt();
         let (yx, zx) = (xy * x, xz * x);
         let middle = yy - yx * yx;
@@ -196,12 +201,12 @@ impl Root {
     #[inline(always)]
     fn divide(&self, s: &Columns) -> Columns {
         let [x, y, z] = self.inverse;
-        let first = s[0].map(|value| value * x);
-        let second: Lanes = std::array::from_fn(|lane| (-self.yx).mul_add(first[lane], s[1][lane]) * y);
+        let first = s.0[0].map(|value| value * x);
+        let second: Lanes = std::array::from_fn(|lane| (-self.yx).mul_add(first[lane], s.0[1][lane]) * y);
         let third = std::array::from_fn(|lane| {
-            (-self.zy).mul_add(second[lane], (-self.zx).mul_add(first[lane], s[2][lane])) * z
+            (-self.zy).mul_add(second[lane], (-self.zx).mul_add(first[lane], s.0[2][lane])) * z
         });
-        [first, second, third]
+        Columns([first, second, third])
     }
 
     /// C⁻¹ v.
@@ -223,13 +228,13 @@ impl Root {
 
 #[inline(always)]
 fn columns_of(block: &Block) -> Columns {
-    std::array::from_fn(|column| [block[0][column], block[1][column], block[2][column], 0.0])
+    Columns(std::array::from_fn(|column| [block[0][column], block[1][column], block[2][column], 0.0]))
 }
 
 /// a += b c.
 #[inline(always)]
 fn add_product(a: &mut Columns, b: &Columns, c: &Columns) {
-    for (sum, by) in a.iter_mut().zip(c) {
+    for (sum, by) in a.0.iter_mut().zip(&c.0) {
         add_times(sum, b, &[by[0], by[1], by[2], 0.0]);
     }
 }
@@ -237,7 +242,7 @@ fn add_product(a: &mut Columns, b: &Columns, c: &Columns) {
 /// a += b v.
 #[inline(always)]
 fn add_times(a: &mut Lanes, b: &Columns, v: &Lanes) {
-    for (column, &by) in b.iter().zip(v) {
+    for (column, &by) in b.0.iter().zip(v) {
         *a = std::array::from_fn(|lane| column[lane].mul_add(by, a[lane]));
     }
 }
@@ -245,5 +250,5 @@ fn add_times(a: &mut Lanes, b: &Columns, v: &Lanes) {
 /// −aᵀ.
 #[inline(always)]
 fn negative_transposed(a: &Columns) -> Columns {
-    std::array::from_fn(|column| [-a[0][column], -a[1][column], -a[2][column], 0.0])
+    Columns(std::array::from_fn(|column| [-a.0[0][column], -a.0[1][column], -a.0[2][column], 0.0]))
 }

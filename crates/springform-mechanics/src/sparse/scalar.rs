@@ -69,6 +69,16 @@ impl ScalarFactor {
             sides[row as usize] = value;
         }
     }
+
+    /// Replaces the right-hand sides that stand at `places`, one a row of the matrix, by their solutions.
+    pub fn solve_at(&mut self, places: &[u32], sides: &mut [Lanes]) {
+        self.sides.clear();
+        self.sides.extend(self.order.iter().map(|&row| sides[places[row as usize] as usize]));
+        Arch::new().dispatch(Substitute { factor: self });
+        for (&value, &row) in self.sides.iter().zip(&self.order) {
+            sides[places[row as usize] as usize] = value;
+        }
+    }
 }
 
 struct Factorise<'a> {

@@ -1,0 +1,208 @@
+// Editing while the net moves: laws, supports, density, filters; sections and files for others.
+import { readFileSync } from "node:fs";
+import type { Page } from "@playwright/test";
+import { pictureOf, STRONGEST } from "./picture";
+import { anchorPlace, converged, documentOf, expect, test } from "./studio";
+
+async function download(page: Page, item: string | RegExp): Promise<Buffer> {
+  await page.getByRole("button", { name: /^Document/ }).click();
+  const coming = page.waitForEvent("download");
+  await page.getByRole("menuitem", { name: item }).click();
+  return readFileSync(await (await coming).path());
+}
+
+test("the law of a cylinder is changed while the net moves, and taken back", async ({
+  page,
+  open,
+}) => {
+  await open("three-cylinders");
+  const before = await documentOf(page);
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("axial_stiffness");
+  await expect(page.locator(".formula")).toContainText("EA refers to the unstressed length L0");
+  await page.getByRole("textbox", { name: /^Axial stiffness EA/ }).fill("3");
+  await page.getByRole("button", { name: "Put the net back to where it was drawn" }).click();
+  await page.getByRole("button", { name: "Apply to trunk" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const after = await documentOf(page);
+  expect(after.spring_groups).toEqual([{ title: "trunk", says: "EA = 3 N · L0 = 0.8 × drawn" }]);
+  expect(after.figures.force_max).not.toBeCloseTo(before.figures.force_max, 3);
+  await converged(page);
+  await expect(page.getByTestId("legend-high")).toContainText(
+    after.figures.force_max.toPrecision(3).replace(/\.?0+$/, ""),
+  );
+  await page.getByRole("button", { name: "Take back: trunk" }).click();
+  await expect.poll(async () => (await documentOf(page)).spring_groups).toEqual([]);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Control+z");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(0);
+  expect((await documentOf(page)).figures).toEqual(before.figures);
+});
+
+test("every law can be given, and what is refused is said", async ({ page, open }) => {
+  await open("one-cylinder");
+  const laws: [key: string, says: RegExp][] = [
+    ["axial_stiffness", /^EA = .* N · L0 = 0\.8 × drawn$/],
+    ["force_density", /^q = .* N\/m$/],
+    ["force", /^T = .* N$/],
+    ["curve", /^a measured curve · L0 = 0\.8 × drawn$/],
+    ["stiffness", /^k = .* N\/m/],
+  ];
+  for (const [at, [key, says]] of laws.entries()) {
+    await page.getByRole("combobox", { name: "Law", exact: true }).selectOption(key);
+    await page.getByRole("button", { name: "Apply to all springs" }).click();
+    await expect.poll(async () => (await documentOf(page)).position).toBe(at + 1);
+    expect((await documentOf(page)).spring_groups.at(-1)?.says).toMatch(says);
+  }
+  await page.getByRole("textbox", { name: /^Stiffness k(?!,)/ }).fill("-1");
+  await page.getByRole("button", { name: "Apply to all springs" }).click();
+  await expect(page.getByText(/stiffness.*must be/)).toBeVisible();
+  expect((await documentOf(page)).position).toBe(laws.length);
+});
+
+test("colours follow forces, not shapes", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("button", { name: "Scale and palette" }).click();
+  await page.getByLabel("Range").selectOption("fixed");
+  await page.keyboard.press("Escape");
+  await page.waitForTimeout(600);
+  const before = await pictureOf(page);
+  const positions = (await documentOf(page)).figures;
+  const stiffness = page.getByLabel("Stiffness k, F = k L");
+  await stiffness.fill("2");
+  await stiffness.press("Enter");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await converged(page);
+  await page.waitForTimeout(600);
+  const doubled = (await documentOf(page)).figures;
+  expect(doubled.force_max).toBeCloseTo(2 * positions.force_max, 6);
+  expect(doubled.total_length).toBeCloseTo(positions.total_length, 6);
+  const after = await pictureOf(page);
+  expect(after.share(STRONGEST, 60)).toBeGreaterThan(3 * before.share(STRONGEST, 60));
+});
+
+test("an anchor slides, and is dragged along an arm", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchorOf = async (name: string) =>
+    (await documentOf(page)).anchors.find((anchor) => anchor.name === name)!;
+  const before = await anchorOf("A7");
+  const place = await anchorPlace(page, "A7");
+  await page.mouse.click(place.x, place.y);
+  await expect(page.getByRole("heading", { name: "Anchor A7" })).toBeVisible();
+  await page.mouse.move(place.x, place.y - 40);
+  await page.mouse.down();
+  await page.mouse.move(place.x + 6, place.y - 90, { steps: 6 });
+  await page.mouse.up();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const moved = await anchorOf("A7");
+  expect(moved.position.slice(0, 2)).toEqual(before.position.slice(0, 2));
+  expect(moved.position[2]).toBeGreaterThan(before.position[2] + 0.1);
+
+  await page.getByLabel("Support").selectOption("slides along z");
+  await expect.poll(async () => (await anchorOf("A7")).holds).toBe("xy");
+  await converged(page);
+  await expect(page.locator(".fact", { hasText: "is now at" })).toBeVisible();
+  await page.getByLabel("Support").selectOption("slides on a line");
+  await page.getByRole("group", { name: "Direction of the line" }).getByLabel("x").fill("1");
+  await page.getByRole("group", { name: "Direction of the line" }).getByLabel("x").press("Enter");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await expect.poll(async () => (await anchorOf("A7")).line).toEqual([1, 0, 1]);
+  await page.getByLabel("Support").selectOption("fixed");
+  await expect.poll(async () => (await anchorOf("A7")).line).toBe(null);
+  await page.getByLabel("Support").selectOption("free");
+  await expect.poll(async () => (await documentOf(page)).anchors.length).toBe(11);
+});
+
+test("density and filters are looked at before they are applied", async ({ page, open }) => {
+  await open("three-cylinders-quad");
+  const before = await documentOf(page);
+  const finer = page.getByRole("button", { name: "Finer: trunk" });
+  await finer.hover();
+  const card = page.locator(".preview-card");
+  await expect(card).toContainText("+384 cells");
+  const counts = (await card.textContent())!;
+  const added = Number(/\+([\d,]+) springs/.exec(counts)![1].replace(",", ""));
+  const removed = Number(/−([\d,]+) springs/.exec(counts)?.[1].replace(",", "") ?? 0);
+  expect(await documentOf(page)).toEqual(before);
+  await finer.click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const after = await documentOf(page);
+  expect(after.figures.springs).toBe(before.figures.springs + added - removed);
+  await expect(card).toBeHidden();
+
+  const filters = page.getByLabel("Filter method");
+  await filters.selectOption("recursive");
+  await expect(card).toContainText("Recursive");
+  expect((await documentOf(page)).method).toBe(after.method);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await expect.poll(async () => (await documentOf(page)).method).toBe("recursive");
+});
+
+test("a section takes half of the net away, and the rest can be picked", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.waitForTimeout(600);
+  const whole = await pictureOf(page);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("k");
+  await page.getByRole("button", { name: "Section across x" }).click();
+  await page.mouse.move(500, 760);
+  await page.waitForTimeout(600);
+  const half = await pictureOf(page);
+  expect(half.lit).toBeLessThan(0.9 * whole.lit);
+  await page.getByLabel("Place of the section").fill("1");
+  await page.waitForTimeout(600);
+  expect((await pictureOf(page)).lit).toBeGreaterThan(half.lit);
+});
+
+test("pictures and models are written for others", async ({ page, open }) => {
+  await open("three-cylinders");
+  const { figures, anchors } = await documentOf(page);
+  await page.waitForTimeout(600);
+  const drawing = (await download(page, "Export a drawing (SVG)")).toString();
+  expect(drawing).toMatch(/^<svg xmlns/);
+  expect(drawing.match(/<line /g)).toHaveLength(figures.springs);
+  for (const { name } of anchors) expect(drawing).toContain(`>${name}</text>`);
+  expect(drawing).toContain("Force [N]");
+  expect(new Set(drawing.match(/stroke="#\w+"/g)).size).toBeGreaterThan(50);
+  const picture = await download(page, "Export a picture (PNG)");
+  expect(picture.subarray(1, 4).toString()).toBe("PNG");
+  const lines = (await download(page, /OBJ/)).toString();
+  expect(lines.match(/^l /gm)).toHaveLength(figures.springs);
+  expect((await download(page, /TOML/)).toString()).toContain('name = "three-cylinders"');
+  expect(JSON.parse((await download(page, /JSON/)).toString()).springform).toBe(1);
+  expect((await download(page, /ZIP/)).subarray(0, 2).toString()).toBe("PK");
+});
+
+test("springs of about the same force are selected and given a law", async ({ page, open }) => {
+  await open("three-cylinders");
+  const anchor = await anchorPlace(page, "A4");
+  await page.mouse.click(anchor.x - 9, anchor.y - 34);
+  await page.getByRole("button", { name: "Same force" }).click();
+  const heading = page.getByRole("heading", { name: /^\d+ springs$/ });
+  await expect(heading).toBeVisible();
+  const count = Number.parseInt((await heading.textContent())!, 10);
+  expect(count).toBeGreaterThan(4);
+  await page.getByRole("textbox", { name: /^Stiffness k(?!,)/ }).fill("1.5");
+  await page.getByRole("button", { name: /^Apply to the/ }).click();
+  await expect
+    .poll(async () => (await documentOf(page)).spring_groups)
+    .toEqual([{ title: `${count} springs`, says: "k = 1.5 N/m" }]);
+});
+
+test("types are given with a brush", async ({ page, open }) => {
+  await open("three-cylinders-quad");
+  const before = await documentOf(page);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Shift+B");
+  await page.getByLabel("Type of the brush").selectOption("2");
+  const { x, y } = await anchorPlace(page, "A4");
+  await page.mouse.move(x, y - 60);
+  await page.mouse.down();
+  await page.mouse.move(x, y - 160, { steps: 12 });
+  await page.mouse.up();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const { history, figures } = await documentOf(page);
+  expect(history.at(-1)?.label).toMatch(/^Give .* type 2$/);
+  expect(figures.springs).not.toBe(before.figures.springs);
+});
