@@ -149,7 +149,9 @@ export async function plan(): Promise<void> {
 /** Sets the patch: one action. */
 export async function applyGraft(): Promise<void> {
   const wanted = placing();
-  if (!wanted) return;
+  const { plan: shown, pinned, place } = grafting.getState();
+  // What has not been looked at is not set.
+  if (!wanted || !shown || (place !== "anchors" && !pinned)) return;
   if (await ask({ type: "graft", ...wanted }, "Grafting")) {
     putAway();
     store.setState({ tool: "pull" });

@@ -146,9 +146,9 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       const global = command.id === "keys" || command.id === "theme";
       if (!global && !(working && state)) return;
       if (typing && !event.ctrlKey && !event.metaKey) return;
-      // A focused button is pressed by the space bar, which is not meant for the net then.
+      // Space and Enter press a focused button; they are not meant for the net then.
       if (
-        event.key === " " &&
+        (event.key === " " || event.key === "Enter") &&
         event.target instanceof Element &&
         event.target.closest("button, [role=tab]")
       )
