@@ -185,6 +185,16 @@ def test_an_action_that_does_not_fit_is_answered_and_changes_nothing(server: Ser
         assert server.state() == before
 
 
+_PLACE = {
+    "patch": "nobody",
+    "cell": 3,
+    "anchor": None,
+    "rotate": 1,
+    "mirror": False,
+    "orbit": False,
+}
+
+
 def _malformed(chance: random.Random, good: list[dict[str, Any]]) -> str | bytes:
     """A message with something wrong: bytes, broken JSON, or a good one with a part replaced."""
     junk: list[Any] = [None, -1, 1e308, "", "x" * 300, [], {}, [[]], {"a": 1}, "\x00", True, 2**70]
@@ -216,6 +226,13 @@ def test_ten_thousand_malformed_messages_change_nothing(server: Server) -> None:
         {"type": "hold", "node": "x", "position": [0, 0, 0]},
         {"type": "seek_stress", "id": 1, "steps": 1, "kind": "nothing"},
         {"type": "set_framework", "id": 1, "framework": {}},
+        {"type": "select_cells", "id": 1, "words": "rings(nobody, 1)", "grow": 1, "orbit": True},
+        {"type": "ask_symmetry", "id": 1},
+        {"type": "copy_patch", "id": 1, "name": "p", "cells": ["x"], "anchor": None, "seed": None},
+        {"type": "rename_patch", "id": 1, "patch": "nobody", "name": "other"},
+        {"type": "delete_patch", "id": 1, "patch": "nobody"},
+        {"type": "plan_graft", "id": 1, "measure": True, **_PLACE},
+        {"type": "graft", "id": 1, **_PLACE},
         {"type": "set_springs", "id": 1, "choice": {"pairs": ["x y"]}, "says": {"force": 0}},
         {"type": "drop_springs", "id": 1, "group": 10**6},
         {"type": "set_density", "id": 1, "part": "nobody", "level": 0},

@@ -6,6 +6,9 @@
     map(trunk, 0..4, 1..2.5)      cells whose centre lies in a region of the unrolled map
     rings(A7, 2)                  two rings of cells round an anchor, a node (v12), a ring
                                   (trunk.start) or a seam (seam:0, the number of the join)
+    row(12)                       all cells of a cylinder or sheet at the height of one
+    loop(12)                      cells from edge to opposite edge, through sides 0 and 2 of one
+    part(trunk)                   all cells of a cylinder or sheet
     force(3..), force(1..2)       cells by the sum of the forces of their springs [N]
     gene(crown)                   cells of everything that holds a gene by reference
     grow(S, 1), shrink(S, 1)      with, or without, what touches the border of a selection
@@ -88,6 +91,32 @@ def vertex_of(design: Design, anchor: str) -> int:
     return vertex
 
 
+def loop_through(mesh: _core.BaseMesh, face: int) -> list[int]:
+    """Return the faces that a walk through side 2 of a face, and one through side 0, meet.
+
+    It goes from edge to opposite edge until it ends at a border, at an edge with three faces or
+    more, or where it has been.
+    """
+    at_edge: dict[frozenset[int], list[tuple[int, int]]] = {}
+    for number, corners in enumerate(mesh.faces.tolist()):
+        for edge in range(4):
+            ends = frozenset((corners[edge], corners[(edge + 1) % 4]))
+            at_edge.setdefault(ends, []).append((number, edge))
+    across = {
+        row[turn]: row[1 - turn] for row in at_edge.values() if len(row) == 2 for turn in (0, 1)
+    }
+    found = [face]
+    for way in (2, 0):
+        at = face, way
+        while at in across:
+            number, entered = across[at]
+            if number in found:
+                break
+            found.append(number)
+            at = number, (entered + 2) % 4
+    return found
+
+
 class _Reader:
     """Reads one selection from left to right."""
 
@@ -135,6 +164,9 @@ class _Reader:
             "lattice": self._lattice,
             "map": self._map,
             "rings": self._rings,
+            "row": self._row,
+            "loop": self._loop,
+            "part": self._whole_part,
             "force": self._force,
             "gene": self._gene,
             "grow": self._grow,
@@ -170,6 +202,28 @@ class _Reader:
             lambda: _core.Selection.rings(mesh, nodes, count, level)
         )
         return found
+
+    def _row(self) -> _core.Selection:
+        mesh, face = self._design.mesh, self._face()
+        parts, corners = mesh.map
+        heights = corners[:, 1::2].sum(axis=1)
+        level = (parts == parts[face]) & (heights == heights[face])
+        return _core.Selection(mesh, [str(cell) for cell in np.flatnonzero(level)])
+
+    def _loop(self) -> _core.Selection:
+        mesh = self._design.mesh
+        return _core.Selection(mesh, [str(cell) for cell in loop_through(mesh, self._face())])
+
+    def _face(self) -> int:
+        face = self._whole("a top-level cell")
+        if face >= len(self._design.mesh.faces):
+            raise self._error(f"there is no top-level cell {face}")
+        return face
+
+    def _whole_part(self) -> _core.Selection:
+        mesh, part = self._design.mesh, self._part()
+        cells = [str(cell) for cell in np.flatnonzero(mesh.map[0] == part)]
+        return _core.Selection(mesh, cells)
 
     def _grow(self) -> _core.Selection:
         inner = self._sum()

@@ -18,7 +18,7 @@ test("no panel has serious findings of axe, dark or light", async ({ page, open 
   await page.getByRole("button", { name: /^three cylinders A trunk/ }).click();
   await converged(page);
   for (const theme of ["dark", "light"]) {
-    for (const panel of ["Net", "Cells", "Framework", "Evolve", "History"]) {
+    for (const panel of ["Net", "Cells", "Framework", "Evolve", "Graft", "History"]) {
       await page.getByRole("tab", { name: panel }).click();
       await accessible(page);
     }

@@ -101,6 +101,43 @@ test("framework", async ({ page, open }) => {
   await take(page, "framework");
 });
 
+test("grafting", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Graft", exact: true }).click();
+  await take(page, "graft-start");
+  const anchor = await anchorPlace(page, "A3");
+  await page.mouse.click(anchor.x + 50, anchor.y - 62);
+  await page.keyboard.press("s");
+  await page.waitForTimeout(600);
+  await page.keyboard.press("l");
+  await page.mouse.move(anchor.x + 60, anchor.y);
+  await page.mouse.down();
+  for (let step = 1; step <= 13; step++) {
+    const angle = (2 * Math.PI * step) / 16;
+    await page.mouse.move(anchor.x + 60 * Math.cos(angle), anchor.y - 30 + 70 * Math.sin(angle));
+    await page.waitForTimeout(30);
+  }
+  await take(page, "lasso");
+  await page.mouse.up();
+  await take(page, "selected");
+  await page.getByRole("textbox", { name: "Name", exact: true }).fill("crown");
+  await page.getByRole("button", { name: "Copy patch" }).click();
+  await page.getByRole("button", { name: "Graft crown" }).click();
+  const other = await anchorPlace(page, "A9");
+  await page.mouse.move(other.x + 2, other.y);
+  await page.mouse.move(other.x, other.y);
+  await take(page, "ghost");
+  await page.getByRole("combobox", { name: "To", exact: true }).selectOption("anchors");
+  await page.locator(".comparison").waitFor();
+  await take(page, "graft-all");
+  await page.getByRole("button", { name: "Apply" }).click();
+  await converged(page);
+  await page.keyboard.press("y");
+  await take(page, "grafted");
+  await page.keyboard.press("d");
+  await take(page, "graft-light");
+});
+
 test("editing", async ({ page, open }) => {
   await open("three-cylinders");
   const anchor = await anchorPlace(page, "A4");

@@ -16,6 +16,7 @@ from .changes import forest_action as _forest
 from .changes import value_action as _value
 from .density import set_density
 from .editing_messages import DropSprings, SetDensity, SetSprings
+from .grafts import whole_orbit
 from .messages import (
     EditCells,
     EditSpring,
@@ -36,7 +37,8 @@ def action_of(design: Design, request: BaseModel, positions: Floats) -> tuple[Ac
     """
     match request:
         case EditCells():
-            return edit_cells(design, request)
+            action, cells = edit_cells(design, request)
+            return whole_orbit(design, action, cells) if request.orbit else (action, cells)
         case SeekStress():
             return seek_stress(design, request)
         case EditSpring():

@@ -15,6 +15,19 @@ from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .graft_messages import (
+    AskSymmetry,
+    CopyPatch,
+    DeletePatch,
+    Graft,
+    GraftPlan,
+    ListPatches,
+    Patches,
+    PlanGraft,
+    RenamePatch,
+    SelectCells,
+    SymmetryState,
+)
 from .message_base import Address, Key, Vector
 from .message_base import Message as _Message
 
@@ -30,6 +43,8 @@ class EditCells(_Message):
     cells: Annotated[list[Address], Field(min_length=1, max_length=100_000)]
     kind: Annotated[str, Field(max_length=100)] | None = None
     """Cell type of the children, or the new type."""
+    orbit: bool = False
+    """Whether the images under the framework's symmetries are edited too."""
 
 
 class EditSpring(_Message):
@@ -245,6 +260,14 @@ Request = Annotated[
     | Reinstate
     | LiveEvolve
     | WeighCells
+    | SelectCells
+    | AskSymmetry
+    | ListPatches
+    | CopyPatch
+    | RenamePatch
+    | DeletePatch
+    | PlanGraft
+    | Graft
     | Hold
     | Release
     | Received,
@@ -427,6 +450,9 @@ class Welcome(_Message):
     version: str
 
 
+Answer = Annotated[SymmetryState | GraftPlan, Field(discriminator="type")]
+
+
 class Reply(_Message):
     """Answer to a request."""
 
@@ -438,6 +464,8 @@ class Reply(_Message):
     """Cells that the action made or changed."""
     preview: PreviewState | None = None
     """What was asked by `preview`."""
+    answer: Answer | None = None
+    """What else was asked for."""
 
 
 class Problem(_Message):
@@ -448,7 +476,8 @@ class Problem(_Message):
 
 
 Event = Annotated[
-    DocumentState | RunState | LiveState | Welcome | Reply | Problem, Field(discriminator="type")
+    DocumentState | RunState | LiveState | Patches | Welcome | Reply | Problem,
+    Field(discriminator="type"),
 ]
 
 

@@ -18,18 +18,30 @@ from ..arrays import Floats
 from ..design import Design, load, save
 from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
-from . import commands, journal
+from ..patch_file import Origin
+from . import commands, grafts, journal
 from .changes import Action, values_of
 from .choosing import brushed, clusters
 from .document import Document
 from .evolving import Evolving
 from .frames import Tables, encode, net_frame, tables_of
+from .graft_messages import (
+    AskSymmetry,
+    CopyPatch,
+    DeletePatch,
+    Graft,
+    ListPatches,
+    PlanGraft,
+    RenamePatch,
+    SelectCells,
+)
 from .library import file_hash
 from .live import Grown
 from .live_stage import LiveStage
 from .messages import (
     REQUEST,
     AnchorState,
+    Answer,
     Brushes,
     Cluster,
     Clusters,
@@ -64,6 +76,7 @@ from .messages import (
     protocol,
 )
 from .motion import Motion, State
+from .patches import PatchFolder
 from .preview import preview_of
 from .spring_groups import group_lines
 from .telling import cell_types_of, figures_of, motion_frame, picture_of, state_of
@@ -128,6 +141,7 @@ class Session:
         self._order = asyncio.Lock()
         self._loop = asyncio.get_running_loop()
         self._windows: set[Window] = set()
+        self._patches = PatchFolder(folder.parent / "patches")
         self._figures: dict[int, Figures] = {}
         self._looking: tuple[Looked, Design, Figures] | None = None
         self._following = False
@@ -218,14 +232,14 @@ class Session:
             if isinstance(request, Preview):
                 self._answer(window, request, preview=await self._preview(request))
                 return
-            cells = await self._do(window, request)
+            cells, answer = await self._do(window, request)
         except SpringformError as error:
             self._answer(window, request, problem=str(error))
         except _core.CoreError as error:
             key, problem = error.args
             self._answer(window, request, problem=f"{key}: {problem}")
         else:
-            self._answer(window, request, cells=cells)
+            self._answer(window, request, cells=cells, answer=answer)
 
     def _answer(self, window: Window, request: Request, **answer: Any) -> None:
         number = getattr(request, "id", None)
@@ -234,7 +248,7 @@ class Session:
         elif "problem" in answer:
             window.tell(Problem(message=answer["problem"]))
 
-    async def _do(self, window: Window, request: Request) -> list[str]:
+    async def _do(self, window: Window, request: Request) -> tuple[list[str], Answer | None]:
         match request:
             case Received():
                 window.on_the_way = max(0, window.on_the_way - 1)
@@ -250,10 +264,16 @@ class Session:
                 self._motion.release(window)
             case Move():
                 self._motion.command(request.what)
+            case SelectCells() | AskSymmetry() | PlanGraft():
+                async with self._order:
+                    return await self._in_thread(lambda: self._found(request))
+            case ListPatches() | CopyPatch() | RenamePatch() | DeletePatch():
+                async with self._order:
+                    await self._file_patch(request)
             case _:
                 async with self._order:
-                    return await self._change(request)
-        return []
+                    return await self._change(request), None
+        return [], None
 
     # --- the document --------------------------------------------------------------------------
 
@@ -288,6 +308,9 @@ class Session:
                 await self._in_thread(lambda: self._save(request))
             case Undo() | Travel():
                 await self._travel(self._goal(request))
+            case Graft():
+                patch = await self._in_thread(lambda: self._patches.load(request.patch))
+                cells = await self.act(lambda: grafts.graft_action(self.design, patch, request))
             case _:
                 cells = await self.act(
                     lambda: commands.action_of(self.design, request, self._now())
@@ -415,6 +438,41 @@ class Session:
                 return name
         problem = "is no anchor; while the net evolves only anchors can be dragged"
         raise InputError(problem, key=node)
+
+    # --- selections and patches ----------------------------------------------------------------
+
+    def _found(
+        self, request: SelectCells | AskSymmetry | PlanGraft
+    ) -> tuple[list[str], Answer | None]:
+        if isinstance(request, SelectCells):
+            return grafts.selected(self.shown, request), None
+        if isinstance(request, AskSymmetry):
+            return [], grafts.symmetry_state(self.design)
+        self._check_design_is_shown()
+        patch = self._patches.load(request.patch)
+        return [], grafts.planned(self.design, patch, request, self._now(), request.measure)
+
+    async def _file_patch(
+        self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch
+    ) -> None:
+        await self._in_thread(lambda: self._filed(request))
+        listing = await self._in_thread(self._patches.listing)
+        for window in self._windows:
+            window.tell(listing)
+
+    def _filed(self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch) -> None:
+        match request:
+            case CopyPatch():
+                looked = None if self._looking is None else self._looking[0]
+                origin = Origin()
+                if looked is not None:
+                    run, place = str(self._known_run().folder), looked.individual
+                    origin = Origin(run=run, generation=looked.generation, individual=place)
+                self._patches.keep(grafts.lifted(self.shown, request, origin))
+            case RenamePatch():
+                self._patches.rename(request.patch, request.name)
+            case DeletePatch():
+                self._patches.delete(request.patch)
 
     # --- the run -------------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ import type {
 } from "../protocol/messages";
 import type { Brushes } from "./choosing";
 import type { ColourChoice } from "./colouring";
+import { grafting } from "./grafting";
 import { type Motion, motionOf } from "./motion";
 import { applyNet, type Net } from "./net";
 import type { Theme } from "./palettes";
@@ -21,7 +22,21 @@ import { NOTHING, type Selection, stillThere } from "./selection";
 import { GROW } from "./weights";
 
 export type Line = "closed" | "connecting" | "open" | "lost" | "refused";
-export type ToolId = "pull" | "subdivide" | "retype" | "cut" | "add" | "weigh";
+export type ToolId =
+  | "pull"
+  | "subdivide"
+  | "retype"
+  | "cut"
+  | "add"
+  | "box"
+  | "lasso"
+  | "ring"
+  | "row"
+  | "loop"
+  | "part"
+  | "band"
+  | "graft"
+  | "weigh";
 
 /** How the net is shown. */
 export interface View {
@@ -228,6 +243,7 @@ function takeEvent(event: Protocol["event"]): void {
   if (event.type === "problem") notify(event.message);
   if (event.type === "run") takeRun(event);
   if (event.type === "live") store.setState({ live: event });
+  if (event.type === "patches") grafting.setState({ patches: event });
 }
 
 const TABLE_EVERY = 500; // ms

@@ -9,6 +9,7 @@ import { commandOfKey, type Dialogs } from "./commands";
 import { DialogsContext, useDialogs } from "./dialogs";
 import { LookingBanner } from "./EvolvePanel";
 import { Gallery } from "./Gallery";
+import { LockState, OutlineOverlay } from "./GraftPanel";
 import { Inspector } from "./Inspector";
 import { LiveBanner } from "./LivePanel";
 import { type OpenDialog, Overlays } from "./Overlays";
@@ -70,6 +71,8 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
       <ToolRail />
       <ViewportPane onStage={onStage}>
         <ToolHelp />
+        <LockState />
+        <OutlineOverlay />
         <LookingBanner />
         <LiveBanner />
         <LineState />
@@ -145,9 +148,9 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       const global = command.id === "keys" || command.id === "theme";
       if (!global && !(working && state)) return;
       if (typing && !event.ctrlKey && !event.metaKey) return;
-      // A focused button is pressed by the space bar, which is not meant for the net then.
+      // Space and Enter press a focused button; they are not meant for the net then.
       if (
-        event.key === " " &&
+        (event.key === " " || event.key === "Enter") &&
         event.target instanceof Element &&
         event.target.closest("button, [role=tab]")
       )

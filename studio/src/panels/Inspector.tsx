@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "react";
 import { CellTree } from "./CellTree";
 import { EvolvePanel } from "./EvolvePanel";
 import { FrameworkPanel } from "./FrameworkPanel";
+import { GraftPanel } from "./GraftPanel";
 import { HistoryPanel } from "./HistoryPanel";
 import { NetPanel } from "./NetPanel";
 import { useStudio } from "./use";
@@ -13,6 +14,7 @@ const PANELS = [
   { id: "cells", name: "Cells", Panel: CellTree },
   { id: "framework", name: "Framework", Panel: FrameworkPanel },
   { id: "evolve", name: "Evolve", Panel: EvolvePanel },
+  { id: "graft", name: "Graft", Panel: GraftPanel },
   { id: "history", name: "History", Panel: HistoryPanel },
 ];
 

@@ -8,7 +8,16 @@ import { useDialogs } from "./dialogs";
 import { Keys } from "./parts";
 import { useStage, useStudio } from "./use";
 
-const GROUPS: Group[] = ["Net", "Cells", "Springs and nodes", "Tools", "View", "Document"];
+const GROUPS: Group[] = [
+  "Net",
+  "Cells",
+  "Selecting",
+  "Grafting",
+  "Springs and nodes",
+  "Tools",
+  "View",
+  "Document",
+];
 
 export type OpenDialog = "palette" | "keys" | "save" | null;
 

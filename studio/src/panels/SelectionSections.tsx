@@ -1,4 +1,5 @@
 // What is selected: cells, a spring, or a node with its coordinates, and what can be done with it.
+import { grafting } from "../document/grafting";
 import { groupOf } from "../document/net";
 import { plainType } from "../document/quantities";
 import { selectedRows } from "../document/selection";
@@ -108,7 +109,15 @@ function CommandWord({ id, word }: { id: string; word: string }) {
         type="button"
         className="button"
         aria-disabled={refused !== null}
-        {...(what ? foreseen(command.label, { type: "edit_cells", what, cells, kind: null }) : {})}
+        {...(what
+          ? foreseen(command.label, {
+              type: "edit_cells",
+              what,
+              cells,
+              kind: null,
+              orbit: grafting.getState().lock,
+            })
+          : {})}
         onClick={() => refused === null && command.run({ viewport, dialogs })}
       >
         {word}

@@ -1,5 +1,19 @@
 // The tools at the left edge.
-import { Brush, Hand, PaintBucket, Scissors, Sprout, Waypoints } from "lucide-react";
+import {
+  Brush,
+  CircleDashed,
+  Cylinder,
+  Gauge,
+  Hand,
+  LassoSelect,
+  MoveVertical,
+  PaintBucket,
+  Rows3,
+  Scissors,
+  Sprout,
+  SquareDashed,
+  Waypoints,
+} from "lucide-react";
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
@@ -25,7 +39,47 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
     icon: <Sprout />,
     help: "Brush over cells where evolution is to grow, or to keep out: choose which in the Evolve panel.",
   },
+  {
+    id: "box",
+    icon: <SquareDashed />,
+    help: "Drag a box over cells to select them; Shift adds, Ctrl takes those behind too.",
+  },
+  {
+    id: "lasso",
+    icon: <LassoSelect />,
+    help: "Draw round cells to select them; Shift adds, Ctrl takes those behind too.",
+  },
+  {
+    id: "ring",
+    icon: <CircleDashed />,
+    help: "Click an anchor or a node to select the cells round it; each further click adds a ring.",
+  },
+  {
+    id: "row",
+    icon: <Rows3 />,
+    help: "Click a cell to select all of its cylinder at its height; Shift adds.",
+  },
+  {
+    id: "loop",
+    icon: <MoveVertical />,
+    help: "Click a cell to select those before and behind it, from edge to edge; Shift adds.",
+  },
+  {
+    id: "part",
+    icon: <Cylinder />,
+    help: "Click a cell to select its whole cylinder; Shift adds.",
+  },
+  {
+    id: "band",
+    icon: <Gauge />,
+    help: "Click a cell to select all that carry the same force, to a tenth; Shift adds.",
+  },
 ];
+
+const HELP: Record<string, string> = {
+  graft:
+    "The ghost follows the pointer over cells and anchors; a click keeps it. R rotates, M mirrors, Enter applies.",
+};
 
 export function ToolRail() {
   const tool = useStudio((state) => state.tool);
@@ -55,7 +109,7 @@ export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
   return (
     <div className="tool-help">
-      <span>{TOOLS.find(({ id }) => id === tool)!.help}</span>
+      <span>{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</span>
       {tool === "retype" && <BrushType />}
     </div>
   );

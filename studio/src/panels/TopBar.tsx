@@ -7,12 +7,15 @@ import {
   Redo2,
   Save,
   Search,
+  Snowflake,
   Sun,
   Undo2,
 } from "lucide-react";
 import { commandOf } from "./commands";
 import { DocumentMenu } from "./DocumentMenu";
 import { useDialogs } from "./dialogs";
+import { useGrafting } from "./GraftPanel";
+import { toggleLock } from "./graftCommands";
 import { Hint, IconButton, Keys } from "./parts";
 import { useStage, useStudio } from "./use";
 
@@ -47,6 +50,7 @@ export function TopBar() {
             </button>
           </Hint>
           <div className="gap" />
+          <LockButton />
           <CommandButton id="save">
             <Save />
           </CommandButton>
@@ -63,6 +67,21 @@ export function TopBar() {
         <CircleHelp />
       </CommandButton>
     </header>
+  );
+}
+
+/** Whether edits go to whole orbits. */
+function LockButton() {
+  const lock = useGrafting((state) => state.lock);
+  return (
+    <IconButton
+      label="Symmetry lock: edit whole orbits"
+      keys="Y"
+      pressed={lock}
+      onClick={toggleLock}
+    >
+      <Snowflake />
+    </IconButton>
   );
 }
 

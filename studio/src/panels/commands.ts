@@ -1,12 +1,22 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
+import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
+import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
 import { toggleSection } from "./SectionControl";
 
-export type Group = "Net" | "Cells" | "Springs and nodes" | "Tools" | "View" | "Document";
+export type Group =
+  | "Net"
+  | "Cells"
+  | "Selecting"
+  | "Grafting"
+  | "Springs and nodes"
+  | "Tools"
+  | "View"
+  | "Document";
 
 export interface Command {
   id: string;
@@ -14,6 +24,8 @@ export interface Command {
   group: Group;
   /** Keys as `KeyboardEvent.key` names them, `Ctrl+` and `Shift+` before them. */
   keys?: string;
+  /** Whether its keys mean it now; always if left out. */
+  when?(state: State): boolean;
   /** Whether it can be done now; if not, why. */
   refused?(state: State): string | null;
   run(stage: { viewport: Viewport | null; dialogs: Dialogs }): void;
@@ -43,13 +55,19 @@ function onAnchor({ net, selection }: State): boolean {
 
 function editCells(what: "subdivide" | "off" | "on" | "turn", label: string): () => void {
   return () => {
-    ask({ type: "edit_cells", what, cells: cells(), kind: null }, label);
+    ask(
+      { type: "edit_cells", what, cells: cells(), kind: null, orbit: grafting.getState().lock },
+      label,
+    );
   };
 }
 
 /** Gives the selected cells a type. */
 export function retype(kind: string): void {
-  ask({ type: "edit_cells", what: "retype", cells: cells(), kind }, "Changing the type");
+  ask(
+    { type: "edit_cells", what: "retype", cells: cells(), kind, orbit: grafting.getState().lock },
+    "Changing the type",
+  );
 }
 
 export function undo(redo: boolean): void {
@@ -83,6 +101,7 @@ function selectSameForce(): void {
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
 export const COMMANDS: Command[] = [
+  ...GRAFT_COMMANDS,
   {
     id: "run",
     label: "Run or pause form-finding",
@@ -414,7 +433,10 @@ export const COMMANDS: Command[] = [
     label: "Select nothing",
     group: "Tools",
     keys: "Escape",
-    run: () => select(NOTHING),
+    run: () => {
+      select(NOTHING);
+      if (store.getState().tool !== "pull") store.setState({ tool: "pull" });
+    },
   },
 ];
 
@@ -434,5 +456,6 @@ export function commandOfKey(event: KeyboardEvent): Command | undefined {
   const shift = event.shiftKey && (letter || name.length > 1) ? "Shift+" : "";
   const pressed = `${control}${shift}${name}`;
   const same = pressed === "Backspace" ? "Delete" : pressed === "Ctrl+Y" ? "Ctrl+Shift+Z" : pressed;
-  return COMMANDS.find(({ keys }) => keys === same);
+  const state = store.getState();
+  return COMMANDS.find(({ keys, when }) => keys === same && (when?.(state) ?? true));
 }

@@ -70,7 +70,7 @@ export class Connection {
 
   private fail(id: number): void {
     const problem = "the engine does not answer; nothing was changed";
-    this.waiting.get(id)?.({ type: "reply", id, problem, cells: [], preview: null });
+    this.waiting.get(id)?.({ type: "reply", id, problem, cells: [], preview: null, answer: null });
     this.waiting.delete(id);
   }
 

@@ -27,10 +27,18 @@ export interface Protocol {
     | Reinstate
     | LiveEvolve
     | WeighCells
+    | SelectCells
+    | AskSymmetry
+    | ListPatches
+    | CopyPatch
+    | RenamePatch
+    | DeletePatch
+    | PlanGraft
+    | Graft
     | Hold
     | Release
     | Received;
-  event: DocumentState | RunState | LiveState | Welcome | Reply | Problem;
+  event: DocumentState | RunState | LiveState | Patches | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
@@ -56,6 +64,10 @@ export interface EditCells {
    * Cell type of the children, or the new type.
    */
   kind: string | null;
+  /**
+   * Whether the images under the framework's symmetries are edited too.
+   */
+  orbit: boolean;
 }
 /**
  * Cut the spring between two nodes, or add one.
@@ -311,6 +323,134 @@ export interface WeighCells {
   factor: number | null;
 }
 /**
+ * Find the cells that words select in what is shown; the reply names them.
+ */
+export interface SelectCells {
+  type: "select_cells";
+  id: number;
+  /**
+   * A selection as files and the command line have it, such as ``rings(A7, 2)``.
+   */
+  words: string | null;
+  /**
+   * Cells to start from, if there are no words.
+   *
+   * @maxItems 100000
+   */
+  cells: string[];
+  /**
+   * Rings of cells to add to them, or to take away.
+   */
+  grow: number;
+  /**
+   * Whether their images under the framework's symmetries are selected too.
+   */
+  orbit: boolean;
+}
+/**
+ * Ask which symmetries the framework has, and whether the net has them too.
+ */
+export interface AskSymmetry {
+  type: "ask_symmetry";
+  id: number;
+}
+/**
+ * Read the folder of patches again.
+ */
+export interface ListPatches {
+  type: "list_patches";
+  id: number;
+}
+/**
+ * Lift a patch from what is shown and keep it in the folder of patches.
+ */
+export interface CopyPatch {
+  type: "copy_patch";
+  id: number;
+  name: string;
+  /**
+   * @minItems 1
+   * @maxItems 100000
+   */
+  cells: string[];
+  /**
+   * Anchor that it is seen from.
+   */
+  anchor: string | null;
+  /**
+   * Top-level cell that it is seen from; None of both: whatever needs the fewest words.
+   */
+  seed: number | null;
+}
+/**
+ * Give a patch another name.
+ */
+export interface RenamePatch {
+  type: "rename_patch";
+  id: number;
+  patch: string;
+  name: string;
+}
+/**
+ * Delete the file of a patch.
+ */
+export interface DeletePatch {
+  type: "delete_patch";
+  id: number;
+  patch: string;
+}
+/**
+ * Ask where a patch would come to lie and, if wanted, what it would change.
+ */
+export interface PlanGraft {
+  patch: string;
+  /**
+   * Top-level cell that the seed is set on.
+   */
+  cell: number | null;
+  /**
+   * Anchor that it is set on; None of both: every anchor.
+   */
+  anchor: string | null;
+  /**
+   * Steps: quarter turns, or round an anchor from cell to cell.
+   */
+  rotate: number;
+  mirror: boolean;
+  /**
+   * Whether it is set on all images under the framework's symmetries.
+   */
+  orbit: boolean;
+  type: "plan_graft";
+  id: number;
+  measure: boolean;
+}
+/**
+ * Set a patch on the design.
+ */
+export interface Graft {
+  patch: string;
+  /**
+   * Top-level cell that the seed is set on.
+   */
+  cell: number | null;
+  /**
+   * Anchor that it is set on; None of both: every anchor.
+   */
+  anchor: string | null;
+  /**
+   * Steps: quarter turns, or round an anchor from cell to cell.
+   */
+  rotate: number;
+  mirror: boolean;
+  /**
+   * Whether it is set on all images under the framework's symmetries.
+   */
+  orbit: boolean;
+  type: "graft";
+  id: number;
+}
+/**
  * Hold a node somewhere for as long as it is dragged.
  */
 export interface Hold {
@@ -553,6 +693,56 @@ export interface LivePoint {
   force_differential: number | null;
 }
 /**
+ * The folder of patches.
+ */
+export interface Patches {
+  type: "patches";
+  folder: string;
+  patches: PatchEntry[];
+}
+/**
+ * A patch of the folder.
+ */
+export interface PatchEntry {
+  name: string;
+  /**
+   * Why the file can't be used; empty if it can.
+   */
+  problem: string;
+  anchored: boolean;
+  tiles: PatchTile[];
+  /**
+   * Top-level cells.
+   */
+  top_level: number;
+  /**
+   * Where it comes from, in words.
+   */
+  origin: string;
+  /**
+   * Largest force in its cells where it comes from [N].
+   */
+  force_max: number | null;
+}
+/**
+ * A cell of a patch, laid out flat.
+ */
+export interface PatchTile {
+  /**
+   * Left, in top-level cells from the seed.
+   */
+  x: number;
+  /**
+   * Bottom.
+   */
+  y: number;
+  size: number;
+  /**
+   * Cell type.
+   */
+  kind: string;
+}
+/**
  * First message to a window.
  */
 export interface Welcome {
@@ -581,6 +771,10 @@ export interface Reply {
    * What was asked by `preview`.
    */
   preview: PreviewState | null;
+  /**
+   * What else was asked for.
+   */
+  answer: (SymmetryState | GraftPlan) | null;
 }
 /**
  * What an action would do.
@@ -616,6 +810,74 @@ export interface Figures1 {
   shortest_spring: number;
   converged: boolean;
   reason: string;
+}
+/**
+ * The symmetries of the framework.
+ */
+export interface SymmetryState {
+  type: "symmetry";
+  /**
+   * With the identity.
+   */
+  rotations: number;
+  mirrors: number;
+  /**
+   * Where the net does not have them; empty: it does.
+   */
+  broken: string;
+  /**
+   * Why they can't be used; empty: they can.
+   */
+  problem: string;
+}
+/**
+ * What a graft would do.
+ */
+export interface GraftPlan {
+  type: "plan";
+  placed: PlacedPatch[];
+  /**
+   * What would be left out, and why.
+   */
+  skipped: string[];
+  /**
+   * Borders of the cells that are written, a segment six numbers [m].
+   */
+  outline: number[];
+  /**
+   * Springs of these cells [m].
+   */
+  springs: number[];
+  before: GraftFigures | null;
+  after: GraftFigures | null;
+}
+/**
+ * A patch where it would be set.
+ */
+export interface PlacedPatch {
+  /**
+   * Top-level cell of the seed.
+   */
+  cell: number;
+  anchor: string | null;
+  /**
+   * Top-level cells that are written.
+   */
+  cells: number[];
+}
+/**
+ * What a graft changes.
+ */
+export interface GraftFigures {
+  springs: number;
+  force_differential: number | null;
+  force_max: number;
+  force_min: number;
+  /**
+   * Nodes at the end of a single spring, and no anchor.
+   */
+  dangling: number;
+  converged: boolean;
 }
 /**
  * Something went wrong that no request asked for.

@@ -1,4 +1,5 @@
 // Brush: every cell that the pointer passes is subdivided, or given a type, when the button comes up.
+import { grafting } from "../document/grafting";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
@@ -47,6 +48,7 @@ export class Brushing implements Tool {
     if (!cells.length) return;
     const kind = this.what === "retype" ? brushType : null;
     const label = this.what === "retype" ? "Changing types" : "Subdividing";
-    ask({ type: "edit_cells", what: this.what, cells, kind }, label);
+    const orbit = grafting.getState().lock;
+    ask({ type: "edit_cells", what: this.what, cells, kind, orbit }, label);
   }
 }

@@ -3,7 +3,9 @@ import { store, type ToolId } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
 import { Brushing } from "./brushing";
+import { Grafting } from "./grafting";
 import { Pulling } from "./pulling";
+import { Gathering, Outlining, Ringing } from "./selecting";
 import { Adding, Cutting } from "./springs";
 import type { Pointer, Tool } from "./tool";
 import { Weighing } from "./weighing";
@@ -19,6 +21,14 @@ export class Hands {
     cut: new Cutting(),
     add: new Adding(),
     weigh: new Weighing(),
+    box: new Outlining(true),
+    lasso: new Outlining(false),
+    ring: new Ringing(),
+    row: new Gathering("row"),
+    loop: new Gathering("loop"),
+    part: new Gathering("part"),
+    band: new Gathering("band"),
+    graft: new Grafting(),
   };
   private press: { x: number; y: number; hit: Hit | null; taken: boolean; far: boolean } | null =
     null;

@@ -1,6 +1,7 @@
 // The viewport: what the document holds and how it is to be seen, drawn on a canvas when either changes.
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
+import { grafting } from "../document/grafting";
 import { type Motion, positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
 import { type Colour, kindColour } from "../document/palettes";
@@ -29,6 +30,8 @@ const KEEP_OUT: Record<State["theme"], Colour> = { dark: [255, 110, 100], light:
 const MARK: Record<State["theme"], Colour> = { dark: [124, 156, 255], light: [52, 88, 210] };
 const COMING: Record<State["theme"], Colour> = { dark: [76, 195, 138], light: [21, 128, 79] };
 const GOING: Record<State["theme"], Colour> = { dark: [255, 77, 79], light: [214, 32, 36] };
+
+const GHOST: Record<State["theme"], Colour> = { dark: [86, 214, 170], light: [10, 122, 84] };
 
 /** Widths of springs [px]. */
 const WIDTH = 1.6;
@@ -68,6 +71,7 @@ export class Viewport {
   private readonly arrows = new Ribbons({ lift: 0.0002, order: 2, haze: 0.2 });
   private readonly ghost = new Ribbons({ lift: 0.0004, order: 2, haze: 0.2 });
   private readonly guides = new Ribbons({ lift: 0.02, order: 3, haze: 0 });
+  private readonly patch = new Ribbons({ lift: 0.0006, order: 3, haze: 0 });
   private readonly skin = new Skin(0.16);
   private readonly markedSkin = new Skin(0.34);
   private readonly discs = new Discs();
@@ -95,7 +99,7 @@ export class Viewport {
     this.scene.fog = new THREE.Fog(0, 0, 1);
     const { mesh } = this.ribbons;
     this.scene.add(mesh, this.hairlines.lines, this.marked.mesh, this.arrows.mesh);
-    this.scene.add(this.ghost.mesh, this.guides.mesh);
+    this.scene.add(this.ghost.mesh, this.guides.mesh, this.patch.mesh);
     this.scene.add(this.skin.mesh, this.markedSkin.mesh, this.discs.points);
     this.eye = new Eye(canvas, () => {
       this.lastMove = performance.now();
@@ -104,7 +108,13 @@ export class Viewport {
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(canvas.parentElement!);
     this.resize();
-    this.stop = store.subscribe((state, before) => this.follow(state, before));
+    const stops = [
+      store.subscribe((state, before) => this.follow(state, before)),
+      grafting.subscribe(({ plan }, before) => plan !== before.plan && this.redraw(true)),
+    ];
+    this.stop = () => {
+      for (const stop of stops) stop();
+    };
     this.follow(store.getState(), null);
   }
 
@@ -218,6 +228,7 @@ export class Viewport {
       this.arrows,
       this.ghost,
       this.guides,
+      this.patch,
       this.skin,
       this.markedSkin,
       this.discs,
@@ -291,8 +302,8 @@ export class Viewport {
     fog.far = haze.y + 0.6 * (haze.y - haze.x);
     const scale = this.renderer.getPixelRatio();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    for (const ribbons of [this.ribbons, this.marked, this.arrows, this.ghost, this.guides])
-      ribbons.fit(size.x, size.y, scale, this.ground, haze);
+    const every = [this.ribbons, this.marked, this.arrows, this.ghost, this.guides, this.patch];
+    for (const ribbons of every) ribbons.fit(size.x, size.y, scale, this.ground, haze);
     this.discs.fit(scale, this.ground);
     const current = net && motion && motion.header.revision === net.revision;
     if (current && (this.dirty || this.drawnRevision !== net.revision)) {
@@ -316,6 +327,7 @@ export class Viewport {
     this.hairlines.set(lines.count, lines.ends, lines.colours);
     this.updateMarks(state, net, endsOf(net, motion.positions));
     this.updateSkin(state, net, motion);
+    this.updatePatch(theme);
     this.discs.set(discsOf(state, net, motion));
   }
 
@@ -356,6 +368,19 @@ export class Viewport {
       widths[chosen.length] = 2.4;
     }
     this.marked.set(count, places, colours, widths);
+  }
+
+  /** Draws the cells that the patch in the hand would become, over the net. */
+  private updatePatch(theme: State["theme"]): void {
+    const plan = grafting.getState().plan;
+    const springs = plan?.springs ?? [];
+    const places = new Float32Array([...springs, ...(plan?.outline ?? [])]);
+    const count = places.length / 6;
+    const colours = new Uint8Array(3 * count);
+    const widths = new Float32Array(count).fill(1.8);
+    for (let line = 0; line < count; line++) colours.set(GHOST[theme], 3 * line);
+    widths.fill(3.2, springs.length / 6);
+    this.patch.set(count, places, colours, widths);
   }
 
   /** Arrows, guides and ghosts, some of which keep their size on the canvas. */

@@ -1,0 +1,173 @@
+// What is asked of the engine for selections and grafts; problems of a plan are shown where it is.
+import type { GraftPlan, SymmetryState } from "../protocol/messages";
+import { grafting, type Place, putAway } from "./grafting";
+import { NOTHING } from "./selection";
+import { ask, askQuietly, notify, select, store } from "./store";
+
+/** Selects what words say, or a selection grown by some rings. */
+export async function selectBy(
+  request: { words: string } | { cells: string[]; grow: number } | { cells: string[]; orbit: true },
+  adding: boolean,
+): Promise<void> {
+  const { selection } = store.getState();
+  const before = adding && selection.kind === "cells" ? selection.keys : [];
+  try {
+    const { cells } = await askQuietly({
+      type: "select_cells",
+      words: null,
+      cells: [],
+      grow: 0,
+      orbit: false,
+      ...request,
+    });
+    select({ kind: "cells", keys: [...new Set([...before, ...cells])] });
+  } catch (error) {
+    notify((error as Error).message);
+  }
+}
+
+/** Top-level cell of an address. */
+export function topLevel(address: string): number {
+  return Number(address.split(".")[0]);
+}
+
+/** Words that select the cells whose springs carry together about as much as those of a cell [N]. */
+export function bandOf(row: number): string {
+  const { net, motion } = store.getState();
+  if (!net || !motion) return "all";
+  const { starts, items } = net.own;
+  let sum = 0;
+  for (const spring of items.subarray(starts[row], starts[row + 1])) sum += motion.forces[spring];
+  return `force(${(0.9 * sum).toFixed(9)}..${(1.1 * sum).toFixed(9)})`;
+}
+
+/** Selects what is not selected. */
+export function invertSelection(): void {
+  const { net, selection } = store.getState();
+  if (!net) return;
+  const chosen = new Set(selection.kind === "cells" ? selection.keys : []);
+  select({ kind: "cells", keys: net.addresses.filter((address) => !chosen.has(address)) });
+}
+
+export function selectAll(): void {
+  const { net } = store.getState();
+  select(net ? { kind: "cells", keys: [...net.addresses] } : NOTHING);
+}
+
+/** Anchors at the corners of the selected cells. */
+export function anchorsAtSelection(): string[] {
+  const { net, selection } = store.getState();
+  if (!net || selection.kind !== "cells") return [];
+  const chosen = new Set(selection.keys);
+  const nodes = new Set<number>();
+  net.addresses.forEach((address, cell) => {
+    if (!chosen.has(address)) return;
+    const { starts, items } = net.boundaries;
+    for (const node of items.subarray(starts[cell], starts[cell + 1])) nodes.add(node);
+  });
+  return net.anchorNames.filter((_, anchor) => nodes.has(net.anchors[anchor]));
+}
+
+export function listPatches(): void {
+  ask({ type: "list_patches" });
+}
+
+/** Reads which symmetries there are. */
+export async function readSymmetry(): Promise<void> {
+  try {
+    const { answer } = await askQuietly({ type: "ask_symmetry" });
+    grafting.setState({ symmetry: answer as SymmetryState });
+  } catch {
+    grafting.setState({ symmetry: null });
+  }
+}
+
+/** Takes a patch into the hand. */
+export function takePatch(name: string): void {
+  grafting.setState({ chosen: name, plan: null, problem: "" });
+  store.setState({ tool: "graft" });
+  plan();
+}
+
+export function changePlace(place: Place): void {
+  grafting.setState({ place, target: null, pinned: false, plan: null, problem: "" });
+  plan();
+}
+
+/** Turns the ghost one step, or mirrors it. */
+export function turnGhost(change: { rotate?: number; mirror?: boolean }): void {
+  const { rotate, mirror } = grafting.getState();
+  grafting.setState({
+    rotate: rotate + (change.rotate ?? 0),
+    mirror: change.mirror ? !mirror : mirror,
+  });
+  plan();
+}
+
+function placing() {
+  const { chosen, place, target, rotate, mirror, lock } = grafting.getState();
+  if (!chosen || (place !== "anchors" && !target)) return null;
+  const here = place === "anchors" ? { cell: null, anchor: null } : target!;
+  const orbit = place === "orbit" || (place === "one" && lock);
+  return { patch: chosen, ...here, rotate, mirror, orbit };
+}
+
+let asking = false;
+let again = false;
+
+/** Asks where the patch in the hand would come to lie; of many calls the last one counts. */
+export async function plan(): Promise<void> {
+  if (asking) {
+    again = true;
+    return;
+  }
+  const { pinned, place } = grafting.getState();
+  const wanted = placing();
+  if (!wanted) {
+    grafting.setState({ plan: null, problem: "" });
+    return;
+  }
+  asking = true;
+  try {
+    const { answer } = await askQuietly({
+      type: "plan_graft",
+      measure: pinned || place === "anchors",
+      ...wanted,
+    });
+    if (grafting.getState().chosen === wanted.patch)
+      grafting.setState({ plan: answer as GraftPlan, problem: "" });
+  } catch (error) {
+    grafting.setState({ plan: null, problem: (error as Error).message });
+  }
+  asking = false;
+  if (again) {
+    again = false;
+    plan();
+  }
+}
+
+/** Sets the patch: one action. */
+export async function applyGraft(): Promise<void> {
+  const wanted = placing();
+  const { plan: shown, pinned, place } = grafting.getState();
+  // What has not been looked at is not set.
+  if (!wanted || !shown || (place !== "anchors" && !pinned)) return;
+  if (await ask({ type: "graft", ...wanted }, "Grafting")) {
+    putAway();
+    store.setState({ tool: "pull" });
+  }
+}
+
+// A ghost of another net than the one that is there would mislead.
+store.subscribe(({ document, tool, line }, before) => {
+  if (tool !== before.tool && tool !== "graft" && grafting.getState().chosen) putAway();
+  if (document?.document !== before.document?.document) putAway();
+  if (line === "open" && line !== before.line) {
+    listPatches();
+    readSymmetry();
+  }
+  if (document && before.document && document.revision !== before.document.revision) {
+    readSymmetry();
+    if (grafting.getState().chosen) plan();
+  }
+});

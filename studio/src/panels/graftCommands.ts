@@ -1,0 +1,159 @@
+// Commands of selecting cells and of grafting, and whether edits go to the whole orbit.
+import { grafting } from "../document/grafting";
+import { applyGraft, invertSelection, selectAll, selectBy, turnGhost } from "../document/planning";
+import { selectedRows } from "../document/selection";
+import { type State, store, type ToolId } from "../document/store";
+import { wordsOf } from "../tools/selecting";
+import type { Command } from "./commands";
+
+const needsCells = ({ selection }: State) =>
+  selection.kind === "cells" && selection.keys.length ? null : "select cells first";
+const inHand = ({ tool }: State) => tool === "graft";
+const tool = (id: ToolId) => () => store.setState({ tool: id });
+
+function gather(by: "row" | "loop" | "part" | "band"): () => void {
+  return () => {
+    const { net, selection } = store.getState();
+    const rows = net ? selectedRows(net, selection, "cells") : [];
+    const words = new Set(rows.map((row) => wordsOf(net!, by, row)));
+    selectBy({ words: [...words].slice(0, 100).join(" + ") }, true);
+  };
+}
+
+function grow(by: number): () => void {
+  return () => selectBy({ cells: store.getState().selection.keys, grow: by }, false);
+}
+
+export function toggleLock(): void {
+  grafting.setState(({ lock }) => ({ lock: !lock }));
+}
+
+export const GRAFT_COMMANDS: Command[] = [
+  {
+    id: "ghost-rotate",
+    label: "Rotate the ghost one step",
+    group: "Grafting",
+    keys: "R",
+    when: inHand,
+    run: () => turnGhost({ rotate: 1 }),
+  },
+  {
+    id: "ghost-mirror",
+    label: "Mirror the ghost",
+    group: "Grafting",
+    keys: "M",
+    when: inHand,
+    run: () => turnGhost({ mirror: true }),
+  },
+  {
+    id: "graft-apply",
+    label: "Apply the graft",
+    group: "Grafting",
+    keys: "Enter",
+    when: inHand,
+    run: () => void applyGraft(),
+  },
+  {
+    id: "lock",
+    label: "Symmetry lock: edit whole orbits",
+    group: "Grafting",
+    keys: "Y",
+    run: toggleLock,
+  },
+  { id: "tool-box", label: "Select by a box", group: "Selecting", keys: "Q", run: tool("box") },
+  {
+    id: "tool-lasso",
+    label: "Select by a lasso",
+    group: "Selecting",
+    keys: "L",
+    run: tool("lasso"),
+  },
+  {
+    id: "tool-ring",
+    label: "Select rings round an anchor",
+    group: "Selecting",
+    keys: "O",
+    run: tool("ring"),
+  },
+  { id: "tool-row", label: "Select rows", group: "Selecting", keys: "E", run: tool("row") },
+  {
+    id: "tool-loop",
+    label: "Select loops",
+    group: "Selecting",
+    keys: "Shift+E",
+    run: tool("loop"),
+  },
+  {
+    id: "tool-part",
+    label: "Select cylinders",
+    group: "Selecting",
+    keys: "Shift+O",
+    run: tool("part"),
+  },
+  {
+    id: "tool-band",
+    label: "Select cells of the same force",
+    group: "Selecting",
+    keys: "J",
+    run: tool("band"),
+  },
+  {
+    id: "grow",
+    label: "Grow the selection",
+    group: "Selecting",
+    keys: "]",
+    refused: needsCells,
+    run: grow(1),
+  },
+  {
+    id: "shrink",
+    label: "Shrink the selection",
+    group: "Selecting",
+    keys: "[",
+    refused: needsCells,
+    run: grow(-1),
+  },
+  {
+    id: "invert",
+    label: "Invert the selection",
+    group: "Selecting",
+    keys: "I",
+    run: invertSelection,
+  },
+  { id: "all", label: "Select all cells", group: "Selecting", keys: "Ctrl+A", run: selectAll },
+  {
+    id: "to-rows",
+    label: "Extend the selection to rows",
+    group: "Selecting",
+    refused: needsCells,
+    run: gather("row"),
+  },
+  {
+    id: "to-loops",
+    label: "Extend the selection to loops",
+    group: "Selecting",
+    refused: needsCells,
+    run: gather("loop"),
+  },
+  {
+    id: "to-parts",
+    label: "Extend the selection to cylinders",
+    group: "Selecting",
+    refused: needsCells,
+    run: gather("part"),
+  },
+  {
+    id: "to-band",
+    label: "Extend the selection to cells of the same force",
+    group: "Selecting",
+    refused: needsCells,
+    run: gather("band"),
+  },
+  {
+    id: "to-orbit",
+    label: "Extend the selection to its orbit",
+    group: "Selecting",
+    refused: needsCells,
+    run: () => selectBy({ cells: store.getState().selection.keys, orbit: true }, true),
+  },
+];
