@@ -178,7 +178,7 @@ test("springs of about the same force are selected and given a law", async ({ pa
   await open("three-cylinders");
   const anchor = await anchorPlace(page, "A4");
   await page.mouse.click(anchor.x - 9, anchor.y - 34);
-  await page.getByRole("button", { name: "Same force" }).click();
+  await page.getByRole("button", { name: "Same force", exact: true }).click();
   const heading = page.getByRole("heading", { name: /^\d+ springs$/ });
   await expect(heading).toBeVisible();
   const count = Number.parseInt((await heading.textContent())!, 10);

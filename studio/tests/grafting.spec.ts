@@ -51,7 +51,7 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   await page.waitForTimeout(1000);
 
   await page.locator("main.viewport canvas").focus();
-  await page.keyboard.press("l");
+  await page.keyboard.press("Shift+L");
   const anchor = await anchorPlace(page, "A3");
   await lasso(page, anchor.x, anchor.y - 20, 55);
   await expect(page.getByLabel("Seen from")).toHaveValue("anchor A3");

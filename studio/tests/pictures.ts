@@ -109,7 +109,7 @@ test("grafting", async ({ page, open }) => {
   await page.mouse.click(anchor.x + 50, anchor.y - 62);
   await page.keyboard.press("s");
   await page.waitForTimeout(600);
-  await page.keyboard.press("l");
+  await page.keyboard.press("Shift+L");
   await page.mouse.move(anchor.x + 60, anchor.y);
   await page.mouse.down();
   for (let step = 1; step <= 13; step++) {

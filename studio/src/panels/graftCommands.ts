@@ -65,7 +65,7 @@ export const GRAFT_COMMANDS: Command[] = [
     id: "tool-lasso",
     label: "Select by a lasso",
     group: "Selecting",
-    keys: "L",
+    keys: "Shift+L",
     run: tool("lasso"),
   },
   {
@@ -75,7 +75,7 @@ export const GRAFT_COMMANDS: Command[] = [
     keys: "O",
     run: tool("ring"),
   },
-  { id: "tool-row", label: "Select rows", group: "Selecting", keys: "E", run: tool("row") },
+  { id: "tool-row", label: "Select rows", group: "Selecting", keys: "Shift+Q", run: tool("row") },
   {
     id: "tool-loop",
     label: "Select loops",
