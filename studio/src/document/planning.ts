@@ -4,13 +4,18 @@ import { grafting, type Place, putAway } from "./grafting";
 import { NOTHING } from "./selection";
 import { ask, askQuietly, notify, select, store } from "./store";
 
-/** Selects what words say, or a selection grown by some rings. */
+let asked = 0;
+let answered = NOTHING;
+
+/** Selects what words say, or a selection grown by some rings; not if something else was selected meanwhile. */
 export async function selectBy(
   request: { words: string } | { cells: string[]; grow: number } | { cells: string[]; orbit: true },
   adding: boolean,
 ): Promise<void> {
   const { selection } = store.getState();
   const before = adding && selection.kind === "cells" ? selection.keys : [];
+  asked += 1;
+  const number = asked;
   try {
     const { cells } = await askQuietly({
       type: "select_cells",
@@ -20,7 +25,10 @@ export async function selectBy(
       orbit: false,
       ...request,
     });
-    select({ kind: "cells", keys: [...new Set([...before, ...cells])] });
+    const now = store.getState().selection;
+    if (number < asked || (now !== selection && now !== answered)) return;
+    answered = { kind: "cells", keys: [...new Set([...before, ...cells])] };
+    select(answered);
   } catch (error) {
     notify((error as Error).message);
   }
