@@ -22,7 +22,7 @@ from ..run import STRATEGY, Run, open_run, start_evolution
 from ..run_writer import RunWriter, create, reopen
 from ..steering import Driver, Requests, driver_of, watch
 from .choosing import AXES
-from .messages import GenerationRow, LineageStep
+from .run_messages import GenerationRow, LineageStep
 
 Status = Literal["running", "paused", "ended", "failed"]
 

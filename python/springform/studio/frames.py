@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..design import Design, Groups
 from ..network import Network
-from .messages import ArrayHeader, NetHeader
+from .frame_messages import ArrayHeader, NetHeader
 
 Ints = NDArray[np.int32]
 

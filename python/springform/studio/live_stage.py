@@ -10,7 +10,7 @@ from ..design import Design
 from ..errors import InputError
 from ..parameters import checked_parameters
 from .live import DEFAULTS, Grown, Live
-from .messages import LiveEvolve, LivePoint, LiveState, WeighCells
+from .live_messages import LiveEvolve, LivePoint, LiveState, WeighCells
 
 _PERIOD = 0.1
 """Shortest time between messages [s]; nets are shown as they come."""

@@ -15,6 +15,7 @@ from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .frame_messages import Frame
 from .graft_messages import (
     AskSymmetry,
     CopyPatch,
@@ -28,8 +29,21 @@ from .graft_messages import (
     SelectCells,
     SymmetryState,
 )
+from .live_messages import LiveEvolve, LiveState, WeighCells
 from .message_base import Address, Key, Vector
 from .message_base import Message as _Message
+from .run_messages import (
+    Brushes,
+    Clusters,
+    Evolve,
+    Follow,
+    Lineage,
+    Look,
+    Looked,
+    Reinstate,
+    RunState,
+    SteerRun,
+)
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
@@ -150,71 +164,6 @@ class Move(_Message):
     type: Literal["move"] = "move"
     id: int
     what: Literal["run", "pause", "step", "reset"]
-
-
-class Evolve(_Message):
-    """Start a run from the design, with parameters; what is left out has its default."""
-
-    type: Literal["evolve"] = "evolve"
-    id: int
-    looked: bool = False
-    """Breed from what is looked at instead."""
-    parameters: dict[str, Any]
-
-
-class SteerRun(_Message):
-    """Pause a run, let it go on, end it, or change parameters from the next generation on."""
-
-    type: Literal["steer_run"] = "steer_run"
-    id: int
-    what: Literal["pause", "continue", "stop", "change"]
-    parameters: dict[str, Any] = Field(default={})
-
-
-class Look(_Message):
-    """Show a parent or an individual of the run instead of the design, or the design again."""
-
-    type: Literal["look"] = "look"
-    id: int
-    generation: Annotated[int, Field(ge=0)] | None
-    """None: the design."""
-    individual: Annotated[int, Field(ge=0)] | None
-    """None: the parent that the generation chose."""
-
-
-class Follow(_Message):
-    """Show the parent of the newest generation for as long as the run goes on, or no longer."""
-
-    type: Literal["follow"] = "follow"
-    id: int
-    on: bool
-
-
-class Reinstate(_Message):
-    """Make what is looked at the design."""
-
-    type: Literal["reinstate"] = "reinstate"
-    id: int
-
-
-class LiveEvolve(_Message):
-    """Let the net evolve before one's eyes, steer it, and keep or discard what it grew."""
-
-    type: Literal["live_evolve"] = "live_evolve"
-    id: int
-    what: Literal["start", "pause", "continue", "change", "keep", "discard"]
-    parameters: dict[str, Any] = Field(default_factory=dict)
-
-
-class WeighCells(_Message):
-    """Brush a factor on the chance that evolution changes cells, and what descends from them."""
-
-    type: Literal["weigh_cells"] = "weigh_cells"
-    id: int
-    cells: Annotated[list[Address], Field(max_length=100_000)]
-    """None at all with no factor: all cells."""
-    factor: Annotated[float, Field(ge=0, le=1e6)] | None
-    """0: keep out; None: as if nothing had been brushed."""
 
 
 class Hold(_Message):
@@ -340,13 +289,6 @@ class CellTypeChoice(_Message):
     name: str
 
 
-class Looked(_Message):
-    """A parent or an individual that is shown instead of the design."""
-
-    generation: int
-    individual: int | None
-
-
 class DocumentState(_Message):
     """The document as it is now."""
 
@@ -378,67 +320,6 @@ class DocumentState(_Message):
     """What is said of some springs; of two that say the same of a spring, the later counts."""
     looking: Looked | None
     """What is shown instead of the design; figures and net are of that."""
-
-
-class GenerationRow(_Message):
-    """What a generation gave: its parent now, and the force differentials of its individuals."""
-
-    generation: int
-    springs: int
-    force_differential: float | None
-    suf: float | None
-    winner: int | None
-    """Individual that became parent; None: the parent stayed."""
-    least: float | None
-    low: float | None
-    """First quartile."""
-    median: float | None
-    high: float | None
-    """Third quartile."""
-    changed: bool
-    """Parameters were changed after it."""
-
-
-class RunState(_Message):
-    """The run of the document."""
-
-    type: Literal["run"] = "run"
-    status: Literal["none", "running", "paused", "ended", "failed"]
-    reason: str
-    folder: str
-    driver: str
-    """Another process that drives it; empty: this studio does, or nobody."""
-    following: bool
-    parameters: dict[str, Any]
-    generations: int
-    """Generations made."""
-    first: int
-    """Generation of the first row; earlier ones are as they were told before."""
-    rows: list[GenerationRow]
-
-
-class LivePoint(_Message):
-    """What a generation of live evolution gave."""
-
-    generation: int
-    springs: int
-    force_differential: float | None
-
-
-class LiveState(_Message):
-    """Live evolution, and the cells that were brushed."""
-
-    type: Literal["live"] = "live"
-    status: Literal["none", "running", "paused", "failed"] = "none"
-    reason: str = ""
-    generation: int = 0
-    rate: float = 0.0
-    """Generations a second."""
-    points: list[LivePoint] = Field(default_factory=list)
-    """Of the last generations."""
-    parameters: dict[str, Any] = Field(default_factory=dict)
-    weights: dict[str, float] = Field(default_factory=dict)
-    """Factors by address of cells."""
 
 
 class Welcome(_Message):
@@ -481,110 +362,7 @@ Event = Annotated[
 ]
 
 
-# --- headers of binary frames ---------------------------------------------------------------------
-
-
-class ArrayHeader(_Message):
-    """One array of a frame."""
-
-    name: str
-    type: Literal["float32", "int32", "uint8"]
-    length: int
-
-
-class NetHeader(_Message):
-    """A net, as what differs from an earlier one."""
-
-    frame: Literal["net"] = "net"
-    revision: int
-    base: int | None
-    """Revision that runs refer to; None: there are no runs."""
-    parts: list[str]
-    anchor_names: list[str]
-    node_keys: list[Key]
-    """Of new nodes."""
-    addresses: list[Address]
-    """Of new cells."""
-    types: list[str]
-    """Of new cells."""
-    arrays: list[ArrayHeader]
-
-
-class MotionHeader(_Message):
-    """Where the net is, and what its springs carry."""
-
-    frame: Literal["motion"] = "motion"
-    revision: int
-    """Revision of the net that the arrays belong to."""
-    steps: int
-    """Steps made since the net was last disturbed."""
-    running: bool
-    settled: bool
-    """Nothing will move until something changes."""
-    converged: bool
-    residual: float | None
-    """Largest force out of balance over the mean spring force; None if it is undefined."""
-    reason: str
-    held: list[int]
-    """Nodes that are dragged."""
-    arrays: list[ArrayHeader]
-
-
-class TableHeader(_Message):
-    """Measures of all individuals from a generation on."""
-
-    frame: Literal["table"] = "table"
-    first: int
-    """Generation of the first individual."""
-    population: int
-    arrays: list[ArrayHeader]
-
-
-Frame = Annotated[NetHeader | MotionHeader | TableHeader, Field(discriminator="frame")]
-
-
 # --- what is fetched ------------------------------------------------------------------------------
-
-
-class LineageStep(_Message):
-    """An ancestor, or the individual itself: what its mutation changed."""
-
-    generation: int
-    individual: int
-    springs: int
-    force_differential: float | None
-    edits: list[str]
-    """Such as ``12.0 subdivide 1 1 6 1``."""
-
-
-class Lineage(_Message):
-    """Where an individual came from, the last step last."""
-
-    steps: list[LineageStep]
-
-
-class Brushes(_Message):
-    """Ask for clusters of what is brushed on axes."""
-
-    brushes: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]]
-    """Least and most by axis."""
-    count: int
-
-
-class Cluster(_Message):
-    """A cluster of individuals, by the one nearest to its middle."""
-
-    generation: int
-    individual: int
-    size: int
-
-
-class Clusters(_Message):
-    """Clusters of what is brushed, the largest first."""
-
-    brushed: int
-    """Individuals that are brushed."""
-    clusters: list[Cluster]
 
 
 class SceneEntry(_Message):

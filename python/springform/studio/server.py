@@ -27,7 +27,8 @@ from ..design import load
 from ..errors import InputError
 from .exports import export
 from .library import Library
-from .messages import Brushes, DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
+from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
+from .run_messages import Brushes
 from .session import Session
 from .telling import picture_of
 
@@ -283,7 +284,7 @@ async def _table(request: Request) -> Response:
     studio: Studio = request.app.state.studio
     session = await studio.session(request.path_params["document"])
     first = request.query_params.get("from", "1")
-    table = session.table(int(first) if first.isdecimal() else 1)
+    table = session.runs.table(int(first) if first.isdecimal() else 1)
     return Response(table, media_type="application/octet-stream")
 
 
@@ -307,21 +308,21 @@ async def _clusters(request: Request) -> BaseModel:
         asked = Brushes.model_validate_json(await request.body())
     except ValidationError:
         raise InputError("must be brushes and a number of clusters", key="body") from None
-    return await asyncio.to_thread(session.clusters, asked)
+    return await asyncio.to_thread(session.runs.clusters, asked)
 
 
 async def _lineage(request: Request) -> BaseModel:
     studio: Studio = request.app.state.studio
     session = await studio.session(request.path_params["document"])
     place = request.path_params["generation"], request.path_params.get("individual")
-    return await asyncio.to_thread(session.lineage, *place)
+    return await asyncio.to_thread(session.runs.lineage, *place)
 
 
 async def _individual(request: Request) -> Response:
     studio: Studio = request.app.state.studio
     session = await studio.session(request.path_params["document"])
     place = request.path_params["generation"], request.path_params["individual"]
-    picture = await asyncio.to_thread(session.picture, *place)
+    picture = await asyncio.to_thread(session.runs.picture, *place)
     return Response(picture, media_type="application/octet-stream")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
@@ -20,11 +19,10 @@ from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from ..patch_file import Origin
 from . import commands, grafts, journal
-from .changes import Action, values_of
-from .choosing import brushed, clusters
+from .changes import Action
 from .document import Document
-from .evolving import Evolving
-from .frames import Tables, encode, net_frame, tables_of
+from .document_telling import document_state
+from .frames import Tables, net_frame, tables_of
 from .graft_messages import (
     AskSymmetry,
     CopyPatch,
@@ -37,49 +35,43 @@ from .graft_messages import (
 )
 from .library import file_hash
 from .live import Grown
+from .live_messages import LiveEvolve, WeighCells
 from .live_stage import LiveStage
 from .messages import (
     REQUEST,
-    AnchorState,
     Answer,
-    Brushes,
-    Cluster,
-    Clusters,
     DocumentState,
-    Evolve,
     Figures,
-    Follow,
-    HistoryLine,
     Hold,
-    Lineage,
-    LiveEvolve,
-    Look,
-    Looked,
     Move,
     MoveAnchor,
     Preview,
     PreviewState,
     Problem,
     Received,
-    Reinstate,
     Release,
     Reply,
     Request,
-    RunState,
     Save,
-    SteerRun,
-    TableHeader,
     Travel,
     Undo,
-    WeighCells,
     Welcome,
     protocol,
 )
 from .motion import Motion, State
 from .patches import PatchFolder
 from .preview import preview_of
-from .spring_groups import group_lines
-from .telling import cell_types_of, figures_of, motion_frame, picture_of, state_of
+from .run_messages import (
+    Evolve,
+    Follow,
+    Look,
+    Looked,
+    Reinstate,
+    SteerRun,
+)
+from .run_stage import RunStage
+from .telling import figures_of, motion_frame, state_of
+from .window import Window
 
 _FRAMES_ON_THE_WAY = 3
 """Frames of motion that a window may not yet have drawn; more would only make it lag."""
@@ -87,47 +79,7 @@ _FRAMES_ON_THE_WAY = 3
 _NETS_KEPT = 8
 """Earlier nets that a window may still have, so that it is sent what changed."""
 
-_RUN_PERIOD = 0.1
-"""Seconds between messages about the run [s]."""
-
-_HISTORY_SHOWN = 200
-"""Actions on each side of the position that windows are told."""
-
 T = TypeVar("T")
-
-
-class Window:
-    """One window: what it has been sent, and what waits for it."""
-
-    def __init__(self) -> None:
-        self._events: deque[str] = deque()
-        self._wake = asyncio.Event()
-        self.revision = 0
-        """Revision of the net that the window has; 0: none."""
-        self.drawn: State | None = None
-        """State of motion that it was sent last."""
-        self.on_the_way = 0
-        """Frames of motion that it has not yet drawn."""
-        self.generations = 0
-        """Generations of the run that it was told of."""
-
-    def tell(self, event: BaseModel) -> None:
-        """Send an event."""
-        self._events.append(event.model_dump_json())
-        self._wake.set()
-
-    def wake(self) -> None:
-        """Look whether there is something to send."""
-        self._wake.set()
-
-    def next_event(self) -> str | None:
-        """Return the event to send next, if one waits."""
-        return self._events.popleft() if self._events else None
-
-    async def woken(self) -> None:
-        """Wait until there may be something to send."""
-        await self._wake.wait()
-        self._wake.clear()
 
 
 class Session:
@@ -144,11 +96,9 @@ class Session:
         self._patches = PatchFolder(folder.parent / "patches")
         self._figures: dict[int, Figures] = {}
         self._looking: tuple[Looked, Design, Figures] | None = None
-        self._following = False
-        self._run: Evolving | None = self._newest_run()
+        settings = self._journal.settings
+        self.runs = RunStage(self._journal.folder / "runs", settings.run, self._run_now)
         self._live = LiveStage(self._tell_all, self._show_grown)
-        self._run_told = 0.0
-        self._run_waits = False
         self._revision = 0
         self._nets: dict[int, tuple[Design, Tables]] = {}
         self._state: State | None = None
@@ -171,8 +121,8 @@ class Session:
         """End the motion, write a snapshot and let the folder go."""
         async with self._order:
             await self._live.close()
-            if self._run is not None:
-                await asyncio.to_thread(self._run.stop)
+            if self.runs.run is not None:
+                await asyncio.to_thread(self.runs.run.stop)
             self._motion.close()
             self._worker.shutdown()
             self._stack.close()
@@ -186,7 +136,7 @@ class Session:
         async with self._order:
             self._windows.add(window)
             window.tell(self._document_state())
-            self._tell_run(window)
+            self.runs.tell(window)
             window.tell(self._live.state())
         return window
 
@@ -297,7 +247,7 @@ class Session:
                 self._live.move_anchor(request.anchor, request.position)
                 return []
             case Look():
-                self._following = False
+                self.runs.following = False
                 await self._look(request.generation, request.individual)
                 self._tell_runs()
             case Follow():
@@ -413,7 +363,7 @@ class Session:
     async def _steer_live(self, request: LiveEvolve) -> None:
         if request.what == "start":
             self._check_design_is_shown()
-            self._following = False
+            self.runs.following = False
         kept = await self._live.steer(request, self.design)
         if kept is not None:
             design, generation = kept
@@ -466,7 +416,7 @@ class Session:
                 looked = None if self._looking is None else self._looking[0]
                 origin = Origin()
                 if looked is not None:
-                    run, place = str(self._known_run().folder), looked.individual
+                    run, place = str(self.runs.known().folder), looked.individual
                     origin = Origin(run=run, generation=looked.generation, individual=place)
                 self._patches.keep(grafts.lifted(self.shown, request, origin))
             case RenamePatch():
@@ -476,45 +426,18 @@ class Session:
 
     # --- the run -------------------------------------------------------------------------------
 
-    def _newest_run(self) -> Evolving | None:
-        """Return the run that the document had last, to look at and to go on with."""
-        folders = sorted((self._journal.folder / "runs").glob("[0-9]*"), reverse=True)
-        if self._journal.settings.run is not None:
-            folders.append(Path(self._journal.settings.run))
-        for folder in folders:
-            run = Evolving(folder, self._run_changed)
-            try:
-                run.open()
-            except InputError:
-                continue  # it died before it was a run
-            return run
-        return None
-
     async def _steer(self, request: Evolve | SteerRun) -> None:
-        run = self._run
-        if isinstance(request, Evolve):
-            if self._live.live is not None:
-                raise InputError("the net evolves; keep or discard what it grew first")
-            if run is not None:
-                await asyncio.to_thread(run.stop)
-            runs = self._journal.folder / "runs"
-            run = Evolving(runs / f"{len(list(runs.glob('*'))) + 1:04}", self._run_changed)
-            values = {"cell_weights": self._live.weights} | request.parameters
-            start = self._start_of(request)
-            await self._in_thread(lambda: run.start(start, values))
-            self._run, self._following = run, True
-            for window in self._windows:
-                window.generations = 0
-        elif run is None:
-            raise InputError("there is no run; start one")
-        elif request.what == "change":
-            await self._in_thread(lambda: run.change(request.parameters))
-        elif request.what == "continue":
-            await self._in_thread(run.go_on)
-        elif request.what == "pause":
-            await self._in_thread(run.pause)
-        elif not await self._in_thread(run.end_driver):
-            await asyncio.to_thread(run.stop)
+        if isinstance(request, SteerRun):
+            await self.runs.steer(request, self._in_thread)
+            self._tell_runs()
+            return
+        if self._live.live is not None:
+            raise InputError("the net evolves; keep or discard what it grew first")
+        values = {"cell_weights": self._live.weights} | request.parameters
+        start = self._start_of(request)
+        await self.runs.start(start, values, self._in_thread)
+        for window in self._windows:
+            window.generations = 0
         self._tell_runs()
 
     def _start_of(self, request: Evolve) -> Design:
@@ -525,9 +448,9 @@ class Session:
         return self._looking[1]
 
     async def _follow(self, on: bool) -> None:
-        self._following = on
-        if on and self._run is not None:
-            await self._look(len(self._run.rows), None)
+        self.runs.following = on
+        if on and self.runs.run is not None:
+            await self._look(self.runs.generations, None)
         self._tell_runs()
 
     async def _look(self, generation: int | None, individual: int | None) -> None:
@@ -536,7 +459,7 @@ class Session:
         else:
             if self._live.live is not None:
                 raise InputError("the net evolves; keep or discard what it grew first")
-            run = self._known_run()
+            run = self.runs.known()
 
             def rebuild() -> tuple[Looked, Design, Figures]:
                 if individual is None:
@@ -556,49 +479,9 @@ class Session:
         name = f"generation {looked.generation}"
         if looked.individual is not None:
             name += f", individual {looked.individual}"
-        self._looking, self._following = None, False
+        self._looking, self.runs.following = None, False
         await self.act(lambda: (commands.whole(self.design, design, f"Take over {name}"), []))
         self._tell_runs()
-
-    def _known_run(self) -> Evolving:
-        if self._run is None:
-            raise InputError("there is no run; start one")
-        return self._run
-
-    def table(self, first: int) -> bytes:
-        """Return the frame with all individuals of the run from a generation on."""
-        run = self._known_run()
-        header = TableHeader(first=first, population=run.parameters.population, arrays=[])
-        return encode(header, run.columns(first))
-
-    def lineage(self, generation: int, individual: int | None) -> Lineage:
-        """Return where a parent or an individual of the run came from."""
-        run = self._known_run()
-        if not 1 <= generation <= len(run.rows):
-            raise InputError(f"there are generations 1 to {len(run.rows)}")
-        if individual is not None and not 0 <= individual < run.parameters.population:
-            raise InputError(f"there are individuals 0 to {run.parameters.population - 1}")
-        return Lineage(steps=run.lineage(generation, individual))
-
-    def clusters(self, asked: Brushes) -> Clusters:
-        """Return clusters of the individuals that are brushed."""
-        run = self._known_run()
-        columns: dict[str, Any] = dict(run.columns(1))
-        population = run.parameters.population
-        columns["generation"] = np.arange(len(columns["springs"])) // population + 1
-        rows = np.flatnonzero(brushed(columns, asked.brushes))
-        found = clusters(columns, rows, asked.count)
-        return Clusters(
-            brushed=len(rows),
-            clusters=[
-                Cluster(generation=row // population + 1, individual=row % population, size=size)
-                for row, size in found
-            ],
-        )
-
-    def picture(self, generation: int, individual: int) -> bytes:
-        """Return the net of an individual at equilibrium, as a frame of its net and its motion."""
-        return picture_of(self._known_run().individual(generation, individual))
 
     def _check_design_is_shown(self) -> None:
         if self._live.live is not None:
@@ -606,55 +489,19 @@ class Session:
         if self._looking is not None:
             raise InputError("this is not your design; take it over, or go back to your design")
 
-    def _run_changed(self) -> None:
-        """Called in the run's thread: windows are told a few times a second, not more."""
-        if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._run_soon)
-
-    def _run_soon(self) -> None:
-        if self._run_waits:
-            return
-        self._run_waits = True
-        wait = max(0.0, self._run_told + _RUN_PERIOD - self._loop.time())
-        self._loop.call_later(wait, lambda: self._loop.create_task(self._run_now()))
-
     async def _run_now(self) -> None:
-        self._run_waits, self._run_told = False, self._loop.time()
         self._tell_runs()
-        run = self._run
-        if not self._following or run is None or not run.rows or self._order.locked():
+        newest = self.runs.generations
+        if not self.runs.following or not newest or self._order.locked():
             return
         async with self._order:
             with suppress(InputError):
-                await self._look(len(run.rows), None)
+                await self._look(newest, None)
                 self._tell_document()
 
     def _tell_runs(self) -> None:
         for window in self._windows:
-            self._tell_run(window)
-
-    def _tell_run(self, window: Window) -> None:
-        run = self._run
-        first = window.generations + 1
-        rows = [] if run is None else run.rows[first - 1 :]
-        if run is not None and run.rows:
-            # The last row told may have been marked as changed since.
-            first = max(1, first - 1)
-            rows = run.rows[first - 1 :]
-        window.generations = 0 if run is None else len(run.rows)
-        window.tell(
-            RunState(
-                status="none" if run is None else run.status,
-                reason="" if run is None else run.reason,
-                folder="" if run is None else str(run.folder),
-                driver="" if run is None or run.driver is None else str(run.driver),
-                following=self._following,
-                parameters={} if run is None else run.parameters.model_dump(mode="json"),
-                generations=window.generations,
-                first=first,
-                rows=rows,
-            )
-        )
+            self.runs.tell(window)
 
     # --- what windows are told -----------------------------------------------------------------
 
@@ -664,51 +511,15 @@ class Session:
             return self._document_state()
 
     def _document_state(self) -> DocumentState:
-        document, design = self._journal.document, self.design
-        looked = self._looking
-        nodes = design.nodes if looked is None else looked[1].nodes
-        held = design.anchors if looked is None else looked[1].anchors
-        first = max(0, document.position - _HISTORY_SHOWN)
-        shown = document.actions[first : document.position + _HISTORY_SHOWN]
-        values = values_of(design)
-        anchors = zip(
-            design.anchor_names,
-            held.tolist(),
-            design.file.framework.anchors,
-            strict=True,
-        )
-        return DocumentState(
-            document=self._journal.folder.name,
-            name=design.name,
-            file=self._journal.settings.file,
-            saved=self._saved is not None and self._saved == design.to_file(),
-            method=design.file.method,
+        document, looked = self._journal.document, self._looking
+        return document_state(
+            self._journal,
+            self.shown,
+            saved=self._saved is not None and self._saved == self.design.to_file(),
             revision=self._revision,
-            position=document.position,
-            length=len(document.actions),
-            history=[
-                HistoryLine(label=action.label, number=number)
-                for number, action in enumerate(shown, start=first + 1)
-            ],
             figures=self._figures[document.position] if looked is None else looked[2],
             before=self._figures.get(document.position - 1) if looked is None else None,
             looking=None if looked is None else looked[0],
-            anchors=[
-                AnchorState(
-                    name=name,
-                    node=nodes[node],
-                    position=list(anchor.position),
-                    holds=anchor.holds,
-                    line=None if anchor.line is None else list(anchor.line),
-                    plane=None if anchor.plane is None else list(anchor.plane),
-                )
-                for name, node, anchor in anchors
-            ],
-            cell_types=cell_types_of(design),
-            framework=values["framework"],
-            stiffness=values["springs"]["stiffness"],
-            ring_factor=values["springs"]["ring_factor"],
-            spring_groups=group_lines(design),
         )
 
     def _take_design(self) -> None:

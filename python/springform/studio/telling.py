@@ -10,8 +10,9 @@ from .. import _core
 from ..design import Design
 from ..design_schema import BUILT_IN_CELL_TYPES
 from ..network import Equilibrium
+from .frame_messages import MotionHeader
 from .frames import encode, net_frame, tables_of
-from .messages import CellTypeChoice, Figures, MotionHeader
+from .messages import CellTypeChoice, Figures
 from .motion import State
 
 

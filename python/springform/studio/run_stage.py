@@ -1,0 +1,169 @@
+"""The run of one document, as windows ask of it and are told of it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..design import Design
+from ..errors import InputError
+from .choosing import brushed, clusters
+from .evolving import Evolving
+from .frame_messages import TableHeader
+from .frames import encode
+from .run_messages import Brushes, Cluster, Clusters, Lineage, RunState, SteerRun
+from .telling import picture_of
+from .window import Window
+
+_PERIOD = 0.1
+"""Seconds between messages about the run [s]."""
+
+InThread = Callable[[Callable[[], Any]], Awaitable[Any]]
+"""Does work in the document's thread."""
+
+
+class RunStage:
+    """The run of a document, if it has one. Methods run in the event loop.
+
+    Attributes: `run` (None: there is no run), `following` (the newest parent is shown).
+    """
+
+    def __init__(
+        self, folder: Path, former: str | None, changed: Callable[[], Awaitable[None]]
+    ) -> None:
+        """`folder` holds the document's runs, `former` is one elsewhere to begin with.
+
+        `changed` is called when there is something to tell, a few times a second and not more.
+        """
+        self.following = False
+        self._folder = folder
+        self._changed = changed
+        self._loop = asyncio.get_running_loop()
+        self._told = 0.0
+        self._waits = False
+        self.run = self._newest(former)
+
+    @property
+    def generations(self) -> int:
+        """Generations that the run made; 0: there is none."""
+        return 0 if self.run is None else len(self.run.rows)
+
+    def known(self) -> Evolving:
+        """Return the run. Raises `InputError`: there is none."""
+        if self.run is None:
+            raise InputError("there is no run; start one")
+        return self.run
+
+    def _newest(self, former: str | None) -> Evolving | None:
+        """Return the run that the document had last, to look at and to go on with."""
+        folders = sorted(self._folder.glob("[0-9]*"), reverse=True)
+        if former is not None:
+            folders.append(Path(former))
+        for folder in folders:
+            run = Evolving(folder, self._run_changed)
+            try:
+                run.open()
+            except InputError:
+                continue  # it died before it was a run
+            return run
+        return None
+
+    async def start(self, design: Design, values: dict[str, Any], in_thread: InThread) -> None:
+        """Start a run and follow it. Raises `InputError`: the values do not fit."""
+        if self.run is not None:
+            await asyncio.to_thread(self.run.stop)
+        folder = self._folder / f"{len(list(self._folder.glob('*'))) + 1:04}"
+        run = Evolving(folder, self._run_changed)
+        await in_thread(lambda: run.start(design, values))
+        self.run, self.following = run, True
+
+    async def steer(self, request: SteerRun, in_thread: InThread) -> None:
+        """Do what a window asks of the run. Raises `InputError`: it does not fit."""
+        run = self.known()
+        if request.what == "change":
+            await in_thread(lambda: run.change(request.parameters))
+        elif request.what == "continue":
+            await in_thread(run.go_on)
+        elif request.what == "pause":
+            await in_thread(run.pause)
+        elif not await in_thread(run.end_driver):
+            await asyncio.to_thread(run.stop)
+
+    def table(self, first: int) -> bytes:
+        """Return the frame with all individuals of the run from a generation on."""
+        run = self.known()
+        header = TableHeader(first=first, population=run.parameters.population, arrays=[])
+        return encode(header, run.columns(first))
+
+    def lineage(self, generation: int, individual: int | None) -> Lineage:
+        """Return where a parent or an individual of the run came from."""
+        run = self.known()
+        if not 1 <= generation <= len(run.rows):
+            raise InputError(f"there are generations 1 to {len(run.rows)}")
+        if individual is not None and not 0 <= individual < run.parameters.population:
+            raise InputError(f"there are individuals 0 to {run.parameters.population - 1}")
+        return Lineage(steps=run.lineage(generation, individual))
+
+    def clusters(self, asked: Brushes) -> Clusters:
+        """Return clusters of the individuals that are brushed."""
+        run = self.known()
+        columns: dict[str, Any] = dict(run.columns(1))
+        population = run.parameters.population
+        columns["generation"] = np.arange(len(columns["springs"])) // population + 1
+        rows = np.flatnonzero(brushed(columns, asked.brushes))
+        found = clusters(columns, rows, asked.count)
+        return Clusters(
+            brushed=len(rows),
+            clusters=[
+                Cluster(generation=row // population + 1, individual=row % population, size=size)
+                for row, size in found
+            ],
+        )
+
+    def picture(self, generation: int, individual: int) -> bytes:
+        """Return the net of an individual at equilibrium, as a frame of its net and its motion."""
+        return picture_of(self.known().individual(generation, individual))
+
+    def tell(self, window: Window) -> None:
+        """Tell a window what it does not know of the run."""
+        run = self.run
+        first = window.generations + 1
+        rows = [] if run is None else run.rows[first - 1 :]
+        if run is not None and run.rows:
+            # The last row told may have been marked as changed since.
+            first = max(1, first - 1)
+            rows = run.rows[first - 1 :]
+        window.generations = 0 if run is None else len(run.rows)
+        window.tell(
+            RunState(
+                status="none" if run is None else run.status,
+                reason="" if run is None else run.reason,
+                folder="" if run is None else str(run.folder),
+                driver="" if run is None or run.driver is None else str(run.driver),
+                following=self.following,
+                parameters={} if run is None else run.parameters.model_dump(mode="json"),
+                generations=window.generations,
+                first=first,
+                rows=rows,
+            )
+        )
+
+    def _run_changed(self) -> None:
+        """Called in the run's thread: windows are told a few times a second, not more."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._soon)
+
+    def _soon(self) -> None:
+        if self._waits:
+            return
+        self._waits = True
+        wait = max(0.0, self._told + _PERIOD - self._loop.time())
+        self._loop.call_later(wait, lambda: self._loop.create_task(self._now()))
+
+    async def _now(self) -> None:
+        self._waits, self._told = False, self._loop.time()
+        await self._changed()
