@@ -35,7 +35,13 @@ pub struct Variation {
 
 impl Default for Variation {
     fn default() -> Self {
-        Variation { genes: Vec::new(), grafts: Amount::Count(1.0), orbits: None, within: None, cell_weights: CellWeights::default() }
+        Variation {
+            genes: Vec::new(),
+            grafts: Amount::Count(1.0),
+            orbits: None,
+            within: None,
+            cell_weights: CellWeights::default(),
+        }
     }
 }
 

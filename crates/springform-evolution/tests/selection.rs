@@ -193,7 +193,9 @@ fn favoured_cells_are_drawn_in_proportion() {
     let mut counts = [0; 4];
     for individual in 0..45_000 {
         let edits = mutate(&candidates, &strategy, &palette, &mut Draws::new(5, 1, individual));
-        let &[Edit::Subdivide { cell, .. }] = edits.as_slice() else { panic!("a third of three cells: {edits:?}") };
+        let &[Edit::Subdivide { cell, .. }] = edits.as_slice() else {
+            panic!("a third of three cells: {edits:?}")
+        };
         counts[cell.face as usize] += 1;
     }
     assert_eq!(counts[2], 0);

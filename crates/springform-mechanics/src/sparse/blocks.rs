@@ -159,10 +159,8 @@ impl NullaryFnOnce for Substitute<'_> {
             let mut side = sides[at];
             for (&row, value) in rows[column(at)].iter().zip(&values[column(at)]) {
                 let below = sides[row as usize];
-                for lane in 0..3 {
-                    let [x, y, z, _] = value.0[lane];
-                    side[lane] =
-                        (-x).mul_add(below[0], (-y).mul_add(below[1], (-z).mul_add(below[2], side[lane])));
+                for (sum, [x, y, z, _]) in side.iter_mut().zip(value.0) {
+                    *sum = (-x).mul_add(below[0], (-y).mul_add(below[1], (-z).mul_add(below[2], *sum)));
                 }
             }
             sides[at] = roots[at].backwards(&side);
