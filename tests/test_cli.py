@@ -384,7 +384,7 @@ def test_defaults_are_those_of_the_help() -> None:
     defaults = sf.Parameters().model_dump()
     text = " ".join(re.sub(r"[│╭╮╰╯─]", " ", done("evolve", "--help").out).split())
     stated = dict(re.findall(r"--([a-z-]+) (?:(?!--).)*?\[([a-z0-9]+)\]", text))
-    # Types depend on the method; switches are off; no gene is drawn and no cell weighed unless said.
+    # Types depend on the method; switches are off; genes and weights of cells are given.
     named = {name for name, value in defaults.items() if value is not None} - {
         "types",
         "self_adapt",
