@@ -6,7 +6,9 @@
     RUN/measures/*.parquet   measures of every individual, one file a checkpoint
     RUN/best.toml         the final parent, once the run has ended
     RUN/log.txt           what happened when
-    RUN/lock              held while a process drives the run
+    RUN/lock              held while a process drives the run, and says which
+    RUN/requests.jsonl    what others ask of the driver between generations
+    RUN/watched           touched by whoever watches, so that checkpoints come quickly
 
 A checkpoint writes its measures first, then its journal lines. What a crash leaves behind the last
 complete checkpoint is dropped on resuming and computed again, to the same bits.

@@ -106,9 +106,9 @@ test("grafting", async ({ page, open }) => {
   await page.getByRole("tab", { name: "Graft", exact: true }).click();
   await take(page, "graft-start");
   const anchor = await anchorPlace(page, "A3");
-  await page.mouse.click(anchor.x + 50, anchor.y - 62);
+  await clickCellAbove(page, anchor);
   await page.keyboard.press("s");
-  await page.waitForTimeout(600);
+  await converged(page);
   await page.keyboard.press("Shift+L");
   await page.mouse.move(anchor.x + 60, anchor.y);
   await page.mouse.down();

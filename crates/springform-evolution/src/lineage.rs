@@ -3,8 +3,8 @@
 //! Finding an order takes longer than factoring by it, and a mutant's net differs from its parent's in a few cells. Its
 //! order is therefore its parent's, with new nodes in front. Nets of weak prestress are slow to solve from where they are
 //! drawn: their mutants start where their parent rests, if all starts lead to the same forces. With strong prestress that
-//! was measured to save nothing. What a parent hands on is found from
-//! the parent's genotype alone, so that a mutant depends on nothing but that and its edits.
+//! was measured to save nothing. What a parent hands on is found from the parent's genotype alone, so that a mutant
+//! depends on nothing but that and its edits.
 
 use springform_mechanics::network::Network;
 use springform_mechanics::vector::{Vector, add, scale, subtract};

@@ -12,7 +12,9 @@ export function HoverCard() {
   const hover = useStudio((state) => state.hover);
   const net = useStudio((state) => state.net);
   const motion = useStudio((state) => (state.hover ? state.motion : null));
-  if (!hover || !net || !motion || motion.header.revision !== net.revision) return null;
+  // The ghost of a graft is what matters then, and the card would hide it.
+  const grafting = useStudio((state) => state.tool === "graft");
+  if (grafting || !hover || !net || !motion || motion.header.revision !== net.revision) return null;
   const left = hover.x + WIDTH + 24 < innerWidth - 370 ? hover.x + 16 : hover.x - WIDTH - 16;
   const top = Math.max(8, Math.min(hover.y + 14, innerHeight - 100 - HEIGHT));
   return (
