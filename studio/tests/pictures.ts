@@ -105,7 +105,7 @@ test("grafting", async ({ page, open }) => {
   await open("three-cylinders");
   await page.getByRole("tab", { name: "Graft", exact: true }).click();
   await take(page, "graft-start");
-  const anchor = await anchorPlace(page, "A3");
+  const anchor = await anchorPlace(page, "A4");
   await clickCellAbove(page, anchor);
   await page.keyboard.press("s");
   await converged(page);

@@ -72,7 +72,7 @@ function Copying() {
     >
       {count === 0 ? (
         <p className="explain">
-          Select cells, by a lasso (L) or in rings round an anchor (O), also of an individual of a
+          Select cells, by a lasso (⇧L) or in rings round an anchor (O), also of an individual of a
           run. What is copied can be set elsewhere, in other nets too.
         </p>
       ) : (
