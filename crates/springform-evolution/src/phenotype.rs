@@ -3,7 +3,7 @@
 use crate::lineage::{Heir, Lineage};
 use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into};
 use springform_mechanics::embedding::Embedding;
-use springform_mechanics::equilibrium::{self, Equilibrium, Settings, Solver, Status};
+use springform_mechanics::equilibrium::{Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
 use springform_mechanics::network::Network;
 use springform_mechanics::rigging::{Rigging, RiggingError};
@@ -105,7 +105,7 @@ impl Setting {
         self.evaluate_with_lineage(forest).map(|(phenotype, _)| phenotype)
     }
 
-    /// The same, and what mutants inherit.
+    /// The same, and the order of elimination that mutants inherit.
     ///
     /// # Errors
     /// The filters leave no net, or the net is refused or finds no equilibrium.
@@ -117,13 +117,7 @@ impl Setting {
             return Err(PhenotypeError::Equilibrium(equilibrium.status, equilibrium.residual));
         }
         let measures = Measures::new(&expression, &network, &equilibrium.positions, &equilibrium.forces);
-        let slow = matches!(equilibrium.method, equilibrium::Method::Newton | equilibrium::Method::Interior);
-        let warm = slow && network.has_one_equilibrium();
-        let lineage = Lineage {
-            nodes: expression.nodes.clone(),
-            order: solver.order().collect(),
-            positions: if warm { equilibrium.positions.clone() } else { Vec::new() },
-        };
+        let lineage = Lineage { nodes: expression.nodes.clone(), order: solver.order().collect() };
         Ok((Phenotype { expression, network, equilibrium, measures }, lineage))
     }
 }
@@ -149,9 +143,8 @@ pub struct Evaluation {
 }
 
 impl Evaluator {
-    /// Grows, solves and measures a closed forest from what its parent hands on, with the outcome of
-    /// [`Setting::evaluate`] but for rounding, or, where it starts at its parent's rest, for what the tolerance leaves open;
-    /// tells `observe` when a stage ends.
+    /// Grows, solves and measures a closed forest in the order of elimination of its parent, with the outcome of
+    /// [`Setting::evaluate`] but for rounding; tells `observe` when a stage ends.
     ///
     /// # Errors
     /// The filters leave no net, or the net is refused or finds no equilibrium.
@@ -173,19 +166,8 @@ impl Evaluator {
         assemble_into(expression, embedding, *law, &mut self.network);
         rigging.rig(mesh, expression, &mut self.network)?;
         observe(Stage::Nodes);
-        self.heir.find_order(&expression.nodes, parent);
-        let warm = !parent.positions.is_empty() && self.network.has_one_equilibrium();
-        if warm {
-            self.heir.find_start(&self.network, parent);
-            self.heir.exchange_start(&mut self.network);
-        }
-        let Evaluator { network, heir, equilibrium, .. } = self;
-        let order = Some(heir.order());
-        self.solver.solve_ordered_into(network, solver, order, equilibrium, observe);
-        if warm && equilibrium.status != Status::Converged {
-            heir.exchange_start(network);
-            self.solver.solve_ordered_into(network, solver, Some(heir.order()), equilibrium, observe);
-        }
+        let order = self.heir.order(&expression.nodes, parent);
+        self.solver.solve_ordered_into(&self.network, solver, Some(order), &mut self.equilibrium, observe);
         let Equilibrium { positions, forces, residual, status, .. } = &self.equilibrium;
         if *status != Status::Converged {
             return Err(PhenotypeError::Equilibrium(*status, *residual));

@@ -254,18 +254,6 @@ impl Network<'_> {
             && self.fixed.iter().all(whole)
     }
 
-    /// The potential energy is convex, so that all starts lead to the same forces: springs only pull, ever more the
-    /// longer they are, and loads are dead. Slack parts may still rest in more than one place.
-    pub fn has_one_equilibrium(&self) -> bool {
-        let pulls = |spring: usize| {
-            self.sense[spring] == Sense::Tension
-                || self.sense[spring] == Sense::Both
-                    && self.rest_length[spring] == 0.0
-                    && self.force[spring] >= 0.0
-        };
-        self.rods.is_empty() && !self.has_followers() && (0..self.springs.len()).all(pulls)
-    }
-
     /// Loads depend on where the nodes are.
     pub fn has_followers(&self) -> bool {
         !self.weight.is_empty() || !self.pressure.values.is_empty()

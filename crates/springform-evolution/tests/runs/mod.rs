@@ -49,7 +49,7 @@ pub fn starts(edits: usize) -> impl Values<Value = Start> {
     nets(edits).prop_map(start)
 }
 
-/// The same, or all springs of a cord that has a rest length and goes slack, whose mutants start near their parent's rest.
+/// The same, or all springs of a cord that has a rest length and goes slack.
 pub fn cords(edits: usize) -> impl Values<Value = Start> {
     (starts(edits), 1e-3..0.2f64).prop_map(|(mut start, rest)| {
         let group = SpringGroup {
