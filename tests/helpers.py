@@ -103,3 +103,16 @@ def assert_untouched(folder: Path, act: Callable[[], Any]) -> Any:
 def environment(**changes: str) -> dict[str, str]:
     """The environment with changes."""
     return dict(os.environ) | changes
+
+
+def refused(*words: str | Path, run: Callable[..., Result] = in_process) -> str:
+    """Run a command that must be refused and change no file; return its one line."""
+    result: Result = assert_untouched(Path.cwd(), lambda: run(*words))
+    assert_refused(result)
+    return result.err
+
+
+def assert_says(line: str, *parts: str) -> None:
+    """A line has all these parts."""
+    for part in parts:
+        assert part in line, line
