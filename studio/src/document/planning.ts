@@ -2,10 +2,7 @@
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
 import { grafting, type Place, putAway } from "./grafting";
 import { NOTHING } from "./selection";
-import { ask, askQuietly, notify, select, store } from "./store";
-
-let asked = 0;
-let answered = NOTHING;
+import { ask, askQuietly, notify, select, selecting, store } from "./store";
 
 /** Selects what words say, or a selection grown by some rings; not if something else was selected meanwhile. */
 export async function selectBy(
@@ -14,8 +11,7 @@ export async function selectBy(
 ): Promise<void> {
   const { selection } = store.getState();
   const before = adding && selection.kind === "cells" ? selection.keys : [];
-  asked += 1;
-  const number = asked;
+  const answer = selecting();
   try {
     const { cells } = await askQuietly({
       type: "select_cells",
@@ -25,10 +21,7 @@ export async function selectBy(
       orbit: false,
       ...request,
     });
-    const now = store.getState().selection;
-    if (number < asked || (now !== selection && now !== answered)) return;
-    answered = { kind: "cells", keys: [...new Set([...before, ...cells])] };
-    select(answered);
+    answer({ kind: "cells", keys: [...new Set([...before, ...cells])] });
   } catch (error) {
     notify((error as Error).message);
   }

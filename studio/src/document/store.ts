@@ -194,10 +194,11 @@ const BUSY_AFTER = 200; // ms
  */
 export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
   const timer = setTimeout(() => store.setState({ busy: label }), BUSY_AFTER);
+  const answer = selecting();
   try {
     if (!connection) throw new Error("no document is open");
     const reply = await connection.ask(request);
-    if (reply.cells.length) store.setState({ selection: { kind: "cells", keys: reply.cells } });
+    if (reply.cells.length) answer({ kind: "cells", keys: reply.cells });
     return reply;
   } catch (error) {
     notify((error as Error).message);
@@ -234,8 +235,20 @@ export function changeColour(change: Partial<ColourChoice>): void {
   store.setState(({ view }) => ({ view: { ...view, colour: { ...view.colour, ...change } } }));
 }
 
+let choices = 0;
+
+/** Selects what a person chose. */
 export function select(selection: Selection): void {
+  choices += 1;
   store.setState({ selection });
+}
+
+/** What selects an answer of the engine, unless the person has chosen something since it was asked. */
+export function selecting(): (selection: Selection) => void {
+  const asked = choices;
+  return (selection) => {
+    if (asked === choices) store.setState({ selection });
+  };
 }
 
 function takeEvent(event: Protocol["event"]): void {
