@@ -16,8 +16,14 @@ use crate::vector::length;
 use pulp::{Arch, NullaryFnOnce};
 use std::collections::VecDeque;
 
-/// Pairs of step and change of pull that are remembered.
-const MEMORY: usize = 2;
+/// Pairs of step and change of pull that are remembered at most.
+const MEMORY: usize = 5;
+
+/// Pairs that are remembered at first: more save one step in twenty and double the memory that a step reads.
+const FEW: usize = 2;
+
+/// Steps after which a descent is slow enough for more pairs to pay.
+const QUICK_STEPS: u32 = 24;
 
 /// Share of the stiffness across a spring in its weight; the rest is that along it.
 const ACROSS: f64 = 0.7;
@@ -110,7 +116,7 @@ impl Descent {
             }
             let slope = self.aim(hill, &pulls);
             let Some((next_state, next_residual)) = self.step(hill, positions, slope, state) else { break };
-            self.remember(positions, &pulls);
+            self.remember(positions, &pulls, if iterations < QUICK_STEPS { FEW } else { MEMORY });
             std::mem::swap(positions, &mut self.next);
             std::mem::swap(&mut pulls, &mut self.next_pulls);
             (state, residual) = (next_state, next_residual);
@@ -192,17 +198,13 @@ impl Descent {
     }
 
     /// Keeps the step to `next` and the change of pulls that it made, if they tell a stiffness above zero.
-    fn remember(&mut self, positions: &[Lanes], pulls: &[Lanes]) {
-        let oldest = if self.pairs.len() == MEMORY { self.pairs.pop_front() } else { self.spare.pop() };
+    fn remember(&mut self, positions: &[Lanes], pulls: &[Lanes], most: usize) {
+        let oldest = if self.pairs.len() == most { self.pairs.pop_front() } else { self.spare.pop() };
         let mut pair = oldest.unwrap_or_default();
-        pair.step.resize(positions.len(), [0.0; 4]);
-        pair.change.resize(positions.len(), [0.0; 4]);
-        let [curvature, step, change] = Arch::new().dispatch(Differences {
-            pair: &mut pair,
-            positions: [positions, &self.next],
-            pulls: [pulls, &self.next_pulls],
-        });
-        if curvature > 1e-12 * (step * change).sqrt() {
+        sum(&mut pair.step, &self.next, -1.0, positions);
+        sum(&mut pair.change, pulls, -1.0, &self.next_pulls);
+        let curvature = inner(&pair.step, &pair.change);
+        if curvature > 1e-12 * (inner(&pair.step, &pair.step) * inner(&pair.change, &pair.change)).sqrt() {
             pair.inverse = 1.0 / curvature;
             self.pairs.push_back(pair);
         } else {
@@ -214,8 +216,8 @@ impl Descent {
 /// Most shares of a direction that are tried.
 const MOST_SHARES: u32 = 12;
 
-/// Steps that are worth their time where prestress is weak: they find the shape, and Newton's steps, of which one costs
-/// as much as all of these, the digits.
+/// Steps that are worth their time where prestress is weak: they find the shape, and Newton's steps, of which two or three
+/// cost as much as all of these, the digits.
 fn steps_for_shape(symbolic: &Symbolic) -> u32 {
     (NEWTON_PER_STEP * symbolic.work() / symbolic.fill().max(1) as f64) as u32
 }
@@ -240,14 +242,9 @@ impl NullaryFnOnce for FirstLoop<'_> {
     fn call(self) {
         let FirstLoop { pairs, shares, pulls, direction } = self;
         direction.copy_from_slice(pulls);
-        let Some(newest) = pairs.back() else { return };
-        let mut product = flat_inner(newest.step.as_flattened(), direction.as_flattened());
-        for at in (0..pairs.len()).rev() {
-            let pair = &pairs[at];
-            shares[at] = pair.inverse * product;
-            // The oldest is multiplied once more, which is not used.
-            let older = &pairs[at.saturating_sub(1)];
-            product = add_and_multiply(direction, -shares[at], &pair.change, &older.step);
+        for (pair, share) in pairs.iter().zip(shares).rev() {
+            *share = pair.inverse * flat_inner(pair.step.as_flattened(), direction.as_flattened());
+            add_scaled(direction.as_flattened_mut(), -*share, pair.change.as_flattened());
         }
     }
 }
@@ -266,42 +263,11 @@ impl NullaryFnOnce for SecondLoop<'_> {
     #[inline(always)]
     fn call(self) -> f64 {
         let SecondLoop { pairs, shares, pulls, direction } = self;
-        let first = pairs.front().map_or(pulls, |pair| pair.change.as_slice());
-        let mut product = flat_inner(first.as_flattened(), direction.as_flattened());
-        for (at, pair) in pairs.iter().enumerate() {
-            let share = shares[at] - pair.inverse * product;
-            let newer = pairs.get(at + 1).map_or(pulls, |pair| pair.change.as_slice());
-            product = add_and_multiply(direction, share, &pair.step, newer);
+        for (pair, share) in pairs.iter().zip(shares) {
+            let other = pair.inverse * flat_inner(pair.change.as_flattened(), direction.as_flattened());
+            add_scaled(direction.as_flattened_mut(), share - other, pair.step.as_flattened());
         }
-        product
-    }
-}
-
-/// Fills a pair: curvature, square of the step, square of the change.
-struct Differences<'a> {
-    pair: &'a mut Pair,
-    positions: [&'a [Lanes]; 2],
-    pulls: [&'a [Lanes]; 2],
-}
-
-impl NullaryFnOnce for Differences<'_> {
-    type Output = [f64; 3];
-
-    #[inline(always)]
-    fn call(self) -> [f64; 3] {
-        let Differences { pair, positions: [positions, next], pulls: [pulls, next_pulls] } = self;
-        let mut sums = [[0.0; 4]; 3];
-        let moves = pair.step.iter_mut().zip(positions.iter().zip(next));
-        let changes = pair.change.iter_mut().zip(pulls.iter().zip(next_pulls));
-        for ((step, (from, to)), (change, (pull, next_pull))) in moves.zip(changes) {
-            for lane in 0..4 {
-                (step[lane], change[lane]) = (to[lane] - from[lane], pull[lane] - next_pull[lane]);
-                sums[0][lane] = step[lane].mul_add(change[lane], sums[0][lane]);
-                sums[1][lane] = step[lane].mul_add(step[lane], sums[1][lane]);
-                sums[2][lane] = change[lane].mul_add(change[lane], sums[2][lane]);
-            }
-        }
-        sums.map(|sum| sum.iter().sum())
+        flat_inner(pulls.as_flattened(), direction.as_flattened())
     }
 }
 
@@ -362,25 +328,12 @@ fn flat_inner(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// a += s b, and the product of a with c then.
+/// a += s b.
 #[inline(always)]
-fn add_and_multiply(a: &mut [Lanes], s: f64, b: &[Lanes], c: &[Lanes]) -> f64 {
-    let mut sums = [0.0; 16];
-    let (a, a_rest) = a.as_flattened_mut().as_chunks_mut::<16>();
-    let (b, b_rest) = b.as_flattened().as_chunks::<16>();
-    let (c, c_rest) = c.as_flattened().as_chunks::<16>();
-    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-        for lane in 0..16 {
-            a[lane] = s.mul_add(b[lane], a[lane]);
-            sums[lane] = a[lane].mul_add(c[lane], sums[lane]);
-        }
-    }
-    let mut rest = 0.0;
-    for ((a, b), c) in a_rest.iter_mut().zip(b_rest).zip(c_rest) {
+fn add_scaled(a: &mut [f64], s: f64, b: &[f64]) {
+    for (a, b) in a.iter_mut().zip(b) {
         *a = s.mul_add(*b, *a);
-        rest = a.mul_add(*c, rest);
     }
-    sums.iter().sum::<f64>() + rest
 }
 
 /// out = a + s b.
