@@ -324,11 +324,12 @@ class Evolving:
                 self.status, self.reason, self.driver = "failed", str(error), None
                 break
             before = self.driver, self.status
-            self.driver = driver
             if driver is not None:
                 self.status = "paused" if driver.standing else "running"
             else:
                 self.status, self.reason = self._left()
+            # Last, since whoever finds no driver goes by the status.
+            self.driver = driver
             if grown or (self.driver, self.status) != before:
                 self._tell()
             if driver is None:
