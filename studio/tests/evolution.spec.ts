@@ -72,7 +72,14 @@ test("a run outlives the studio", async ({ page, open, home }) => {
   await page.getByRole("button", { name: "Evolve", exact: true }).click();
   await expect.poll(() => generations(page)).toBeGreaterThan(3);
   await page.getByRole("button", { name: "Pause", exact: true }).click();
-  await page.waitForTimeout(700);
+  await expect(page.getByRole("button", { name: "Continue" })).toBeVisible();
+  // A page that draws in software hears of the last generations late.
+  const stands = async () => {
+    const before = await generations(page);
+    await page.waitForTimeout(700);
+    return (await generations(page)) === before;
+  };
+  await expect.poll(stands).toBe(true);
   const made = await generations(page);
   const { port, hash } = new URL(page.url());
   await studio.kill();

@@ -162,6 +162,7 @@ let notices = 0;
 export function openDocument(id: string): void {
   connection?.close();
   connection = null;
+  coming = null;
   const closed = {
     document: null,
     net: null,
@@ -285,21 +286,36 @@ function takeRun(state: RunState): void {
   }, TABLE_EVERY);
 }
 
+/** A net of live evolution whose first frame of motion is on its way. */
+let coming: Net | null = null;
+
 function takeFrame({ header, arrays }: Frame): void {
-  const { net, selection } = store.getState();
+  const { net, motion, live } = store.getState();
   if (header.frame === "net") {
-    const next = applyNet(net, header, arrays);
-    // Until the first frame of motion comes, nothing is known of the new net's positions.
-    store.setState({
-      net: next,
-      motion: null,
-      hover: null,
-      preview: null,
-      selection: stillThere(selection, next),
-    });
+    const next = applyNet(coming ?? net, header, arrays);
+    // New nets come many times a second then: the one before can be picked and pulled until this one is placed.
+    const waits = motion !== null && live !== null && live.status !== "none";
+    coming = waits ? next : null;
+    // Otherwise nothing is known of the new net's positions until the first frame of motion comes.
+    if (!waits) takeNet(next, null);
     return;
   }
   if (header.frame !== "motion") return;
   tell({ type: "received" });
-  if (net && header.revision === net.revision) store.setState({ motion: motionOf(header, arrays) });
+  const placed = coming ?? net;
+  if (!placed || header.revision !== placed.revision) return;
+  if (coming) takeNet(coming, motionOf(header, arrays));
+  else store.setState({ motion: motionOf(header, arrays) });
+}
+
+function takeNet(net: Net, motion: Motion | null): void {
+  coming = null;
+  const { selection } = store.getState();
+  store.setState({
+    net,
+    motion,
+    hover: null,
+    preview: null,
+    selection: stillThere(selection, net),
+  });
 }
