@@ -24,7 +24,12 @@ def studio(
             help="A design file, a scene's name or a run folder; without it, the start page.",
         ),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0: any that is free.")] = 0,
+    port: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=65535, help="Port; 0: any that is free. By default that of last time."
+        ),
+    ] = None,
     home: Annotated[
         Path | None, typer.Option(help="Folder of the documents; by default your data folder's.")
     ] = None,

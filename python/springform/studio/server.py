@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError
 from starlette.applications import Starlette
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -25,6 +25,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .. import _core, scenes
 from ..design import load
 from ..errors import InputError
+from .address import Address, keep_address, last_address
 from .exports import export
 from .library import Library
 from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
@@ -45,6 +46,15 @@ _POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 )
+
+
+_WRONG_ADDRESS = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>springFORM</title>
+<body style="font: 16px/1.6 system-ui, sans-serif; max-width: 34em; margin: 18vh auto; padding: 0 2em">
+<h1 style="font-size: 1.3em">This address is not the studio's</h1>
+<p>Open the address that <code>springform studio</code> printed when it was started, with its
+token. Your documents are kept: nothing is lost.</p>
+"""
 
 
 class Studio:
@@ -123,24 +133,18 @@ def application(library: Library, token: str, port: int) -> Starlette:
 def serve(
     library: Library,
     *,
-    port: int = 0,
-    token: str | None = None,
+    port: int | None = None,
     on_ready: Callable[[str], None] = lambda address: None,
 ) -> None:
     """Serve until the process is told to stop; `on_ready` is given the address with its token.
 
-    Port 0 means any that is free. Raises `InputError`: the port is taken.
+    Without a port it is the one these documents were last served on, if that is free; 0 means
+    any. The token stays the same. Raises `InputError`: the port is taken.
     """
-    token = secrets.token_urlsafe(24) if token is None else token
-    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listening.bind((HOST, port))
-    except OSError as error:
-        listening.close()
-        problem = f"port {port} can't be used: {error.strerror}; choose another"
-        raise InputError(problem, key="--port") from None
-    port = listening.getsockname()[1]
+    last = last_address(library.home)
+    listening = _listen(last.port, otherwise=True) if port is None else _listen(port)
+    port, token = listening.getsockname()[1], last.token
+    keep_address(library.home, Address(port=port, token=token))
     config = uvicorn.Config(
         application(library, token, port),
         ws="websockets-sansio",
@@ -153,6 +157,20 @@ def serve(
     )
     server = _Server(config, lambda: on_ready(f"http://{HOST}:{port}/?token={token}"))
     server.run(sockets=[listening])
+
+
+def _listen(port: int, *, otherwise: bool = False) -> socket.socket:
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((HOST, port))
+    except OSError as error:
+        listening.close()
+        if otherwise:
+            return _listen(0)
+        problem = f"port {port} can't be used: {error.strerror}; choose another"
+        raise InputError(problem, key="--port") from None
+    return listening
 
 
 class _Server(uvicorn.Server):
@@ -180,8 +198,7 @@ class _Guard:
             # Refused before it is accepted, which a browser and a client see as 403.
             await send({"type": "websocket.close", "code": 1008})
         else:
-            refusal = Refusal(problem="the address needs the token that the studio printed")
-            await _json(refusal, 403)(scope, receive, _with_headers(send))
+            await _refusal(scope)(scope, receive, _with_headers(send))
 
     def _allows(self, scope: Scope) -> bool:
         headers = Headers(scope=scope)
@@ -196,6 +213,13 @@ class _Guard:
         bearer = headers.get("authorization", "").removeprefix("Bearer ")
         given = connection.query_params.get("token") or bearer
         return secrets.compare_digest(given.encode(), self._token.encode())
+
+
+def _refusal(scope: Scope) -> Response:
+    problem = "the address needs the token that the studio printed"
+    if scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", ""):
+        return HTMLResponse(_WRONG_ADDRESS, 403, {"cache-control": "no-store"})
+    return _json(Refusal(problem=problem), 403)
 
 
 def _with_headers(send: Send) -> Send:

@@ -41,7 +41,7 @@ export function App() {
   useKeys(stage, dialogs, dialog !== null, id !== "");
   const close = useCallback(() => setDialog(null), []);
   return (
-    <Tooltip.Provider delayDuration={350} skipDelayDuration={150}>
+    <Tooltip.Provider delayDuration={350} skipDelayDuration={150} disableHoverableContent>
       <DialogsContext value={dialogs}>
         <StageContext value={stage}>
           {id ? <Workbench key={id} onStage={setStage} /> : <Front />}
@@ -83,6 +83,8 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
     </div>
   );
 }
+
+const TEXT_FIELDS = "textarea, input:not([type=checkbox], [type=radio], [type=range])";
 
 /** What is wrong with the line to the engine, over the net. */
 function LineState() {
@@ -140,21 +142,17 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
   const state = useStudio((all) => all.document !== null);
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
-      const typing =
-        event.target instanceof Element &&
-        event.target.closest("input, select, textarea, [role=menu]");
+      const at = event.target instanceof Element ? event.target : null;
+      const typing = at?.closest("input, select, textarea, [role=menu]");
       const command = commandOfKey(event);
       if (covered || !command) return;
       const global = command.id === "keys" || command.id === "theme";
       if (!global && !(working && state)) return;
       if (typing && !event.ctrlKey && !event.metaKey) return;
+      // What is typed is marked, copied and undone in its field, and not in the net.
+      if (at?.closest(TEXT_FIELDS) && "acvxyz".includes(event.key.toLowerCase())) return;
       // Space and Enter press a focused button; they are not meant for the net then.
-      if (
-        (event.key === " " || event.key === "Enter") &&
-        event.target instanceof Element &&
-        event.target.closest("button, [role=tab]")
-      )
-        return;
+      if ((event.key === " " || event.key === "Enter") && at?.closest("button, [role=tab]")) return;
       event.preventDefault();
       const viewport = stage?.viewport ?? null;
       const refused = command.refused ? command.refused(store.getState()) : null;

@@ -9,24 +9,25 @@ import { Thumbnail } from "./Thumbnail";
 export function StartPage() {
   const [shelf, setShelf] = useState<Shelf | null>(null);
   const [problem, setProblem] = useState("");
+  const [fileProblem, setFileProblem] = useState("");
   const [opening, setOpening] = useState("");
   const [path, setPath] = useState("");
   useEffect(() => {
     fetchShelf().then(setShelf, (error: Error) => setProblem(error.message));
   }, []);
-  const open = async (source: string) => {
+  const open = async (source: string, tell: (problem: string) => void) => {
     setOpening(source);
-    setProblem("");
+    tell("");
     try {
       location.hash = await openSource(source);
     } catch (error) {
-      setProblem((error as Error).message);
+      tell((error as Error).message);
     }
     setOpening("");
   };
   const submit = (event: FormEvent) => {
     event.preventDefault();
-    if (path.trim()) open(path.trim());
+    if (path.trim()) open(path.trim(), setFileProblem);
   };
   return (
     <main className="start">
@@ -71,7 +72,7 @@ export function StartPage() {
             <ul className="scenes">
               {shelf.scenes.map(({ name, description }) => (
                 <li key={name}>
-                  <button type="button" onClick={() => open(name)} disabled={opening !== ""}>
+                  <button type="button" onClick={() => open(name, setProblem)} disabled={opening !== ""}>
                     <Thumbnail path={`/api/scenes/${name}/picture`} width={256} height={172} />
                     <b>
                       {name.replaceAll("-", " ")}
@@ -101,6 +102,11 @@ export function StartPage() {
               Open
             </button>
           </form>
+          {fileProblem && (
+            <p className="problem" role="alert">
+              {fileProblem}
+            </p>
+          )}
         </section>
       </div>
     </main>

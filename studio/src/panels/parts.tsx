@@ -96,6 +96,15 @@ export function Section({
   );
 }
 
+// Two equilibria of one net agree to about this, relative to the value.
+const AGREEMENT = 1e-7;
+
+/** Whether two measures differ by more than the solver's tolerance. */
+function differs(one: number, other: number): boolean {
+  const difference = Math.abs(one - other);
+  return difference > 1e-12 && difference > AGREEMENT * Math.max(Math.abs(one), Math.abs(other));
+}
+
 /** A value with its name, unit and, if it is known, how it changed. */
 export function Fact({
   name,
@@ -115,7 +124,8 @@ export function Fact({
   digits?: number;
   title?: string;
 }) {
-  const changed = typeof value === "number" && typeof before === "number" && value !== before;
+  const changed =
+    typeof value === "number" && typeof before === "number" && differs(value, before);
   const change = changed ? value - before : 0;
   const good = better && (better === "less" ? change < 0 : change > 0);
   const tone = !better ? "" : good ? "good" : "bad";

@@ -26,6 +26,12 @@ export interface Listener {
 const FIRST_WAIT = 250; // ms
 const LONGEST_WAIT = 4000; // ms
 
+/** Whether an engine is there that does not know this page's token. */
+async function isUnknown(): Promise<boolean> {
+  const answer = await fetch(engineAddress("/")).catch(() => null);
+  return answer?.status === 403;
+}
+
 /** A line to one document. */
 export class Connection {
   private socket: WebSocket | null = null;
@@ -101,10 +107,14 @@ export class Connection {
       }
       this.listener.event(event);
     };
-    socket.onclose = () => {
+    socket.onclose = async () => {
       for (const id of [...this.waiting.keys()]) this.fail(id);
       if (this.closed || refused) return;
       this.listener.line("lost");
+      if (await isUnknown()) {
+        this.listener.line("refused", "the engine was started anew; open the address it printed");
+        return;
+      }
       setTimeout(() => !this.closed && this.open(), this.wait);
       this.wait = Math.min(this.wait * 2, LONGEST_WAIT);
     };
