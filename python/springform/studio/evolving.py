@@ -34,12 +34,13 @@ _KEPT_ALGORITHMS = 4
 _POLL = 0.25
 """Seconds between looks at requests, and at a run that another process drives [s]."""
 
-_ENDINGS = {
+ENDINGS = {
     "generations": "the number of generations is reached",
     "springs": "the number of springs is reached",
     "differential": "the force differential is reached",
     "suf": "the spring utilization factor is reached",
 }
+"""Why a run ended, by the name of the condition."""
 
 
 class Evolving:
@@ -282,7 +283,7 @@ class Evolving:
             self._tell()
         else:
             writer.checkpoint()
-            self.status, self.reason = "ended", _ENDINGS[reason]
+            self.status, self.reason = "ended", ENDINGS[reason]
         save(self.parent(len(self.rows)), self.folder / "best.toml")
 
     def _obey(self, requests: Requests, writer: RunWriter) -> None:
@@ -340,7 +341,7 @@ class Evolving:
         """Return how a run stands that its driver has left."""
         evolution = self._algorithm(len(self.rows), threads=1)
         reason = evolution.reached(*self.parameters.ending())
-        return ("paused", "") if reason is None else ("ended", _ENDINGS[reason])
+        return ("paused", "") if reason is None else ("ended", ENDINGS[reason])
 
     def _keep(self, evolution: _core.Evolution, writer: RunWriter) -> None:
         result = evolution.advance()

@@ -68,6 +68,8 @@ class EditSpring(_Message):
     id: int
     what: Literal["cut", "add"]
     nodes: Annotated[list[Key], Field(min_length=2, max_length=2)]
+    orbit: bool = False
+    """Whether the images under the framework's symmetries are cut or added too."""
 
 
 class MoveAnchor(_Message):
@@ -101,6 +103,8 @@ class SeekStress(_Message):
     id: int
     steps: Annotated[int, Field(ge=1, le=1000)]
     kind: Annotated[str, Field(max_length=100)]
+    orbit: bool = False
+    """Whether a step subdivides all images of the cell under the framework's symmetries."""
 
 
 class SetValue(_Message):
@@ -341,6 +345,8 @@ class Reply(_Message):
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
+    key: str | None = None
+    """What the problem is about, such as a parameter, where that is known."""
     cells: list[Address] = Field(default=[])
     """Cells that the action made or changed."""
     preview: PreviewState | None = None

@@ -18,7 +18,7 @@ from ..design import Design, load, save
 from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from ..patch_file import Origin
-from . import commands, grafts, journal
+from . import commands, grafts, journal, orbits
 from .changes import Action
 from .document import Document
 from .document_telling import document_state
@@ -98,14 +98,18 @@ class Session:
         self._looking: tuple[Looked, Design, Figures] | None = None
         settings = self._journal.settings
         self.runs = RunStage(self._journal.folder / "runs", settings.run, self._run_now)
-        self._live = LiveStage(self._tell_all, self._show_grown)
         self._revision = 0
         self._nets: dict[int, tuple[Design, Tables]] = {}
         self._state: State | None = None
         self._state_frame: bytes = b""
         self._saved = self._read_file()
+        self._live = LiveStage(
+            self._journal.folder, lambda: self.design, self._tell_all, self._show_grown
+        )
         self._motion = Motion(lambda state: self._call(self._moved, state))
         self._take_design()
+        if self._live.live is not None:
+            self._show_grown(self._live.live.grown)
 
     @property
     def design(self) -> Design:
@@ -184,10 +188,11 @@ class Session:
                 return
             cells, answer = await self._do(window, request)
         except SpringformError as error:
-            self._answer(window, request, problem=str(error))
+            key = error.key if isinstance(error, InputError) else None
+            self._answer(window, request, problem=str(error), key=key)
         except _core.CoreError as error:
             key, problem = error.args
-            self._answer(window, request, problem=f"{key}: {problem}")
+            self._answer(window, request, problem=f"{key}: {problem}", key=key)
         else:
             self._answer(window, request, cells=cells, answer=answer)
 
@@ -364,11 +369,16 @@ class Session:
         if request.what == "start":
             self._check_design_is_shown()
             self.runs.following = False
-        kept = await self._live.steer(request, self.design)
+        kept = await self._live.steer(request)
         if kept is not None:
             design, generation = kept
             label = f"Evolve live, {generation} generation{'' if generation == 1 else 's'}"
-            await self.act(lambda: (commands.whole(self.design, design, label), []))
+            try:
+                await self.act(lambda: (commands.whole(self.design, design, label), []))
+            except SpringformError:
+                self._live.take_up()
+                raise
+            self._live.forget()
         elif request.what == "discard":
             self._take_design()
 
@@ -397,7 +407,7 @@ class Session:
         if isinstance(request, SelectCells):
             return grafts.selected(self.shown, request), None
         if isinstance(request, AskSymmetry):
-            return [], grafts.symmetry_state(self.design)
+            return [], orbits.symmetry_state(self.design)
         self._check_design_is_shown()
         patch = self._patches.load(request.patch)
         return [], grafts.planned(self.design, patch, request, self._now(), request.measure)

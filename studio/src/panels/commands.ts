@@ -81,7 +81,8 @@ export function move(what: "run" | "pause" | "step" | "reset"): void {
 export function seek(steps: number): void {
   const { document } = store.getState();
   const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
-  ask({ type: "seek_stress", steps, kind }, `Seeking stress, ${steps} steps`);
+  const orbit = grafting.getState().lock;
+  ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
 }
 
 const BAND = 0.1; // of the force, on each side
@@ -165,7 +166,7 @@ export const COMMANDS: Command[] = [
     refused: needsSpring,
     run: () => {
       const nodes = store.getState().selection.keys[0].split(" ");
-      ask({ type: "edit_spring", what: "cut", nodes }, "Cutting");
+      ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
     },
   },
   {

@@ -81,6 +81,10 @@ export interface EditSpring {
    * @maxItems 2
    */
   nodes: string[];
+  /**
+   * Whether the images under the framework's symmetries are cut or added too.
+   */
+  orbit: boolean;
 }
 /**
  * Hold an anchor somewhere else.
@@ -124,6 +128,10 @@ export interface SeekStress {
   id: number;
   steps: number;
   kind: string;
+  /**
+   * Whether a step subdivides all images of the cell under the framework's symmetries.
+   */
+  orbit: boolean;
 }
 /**
  * Change a value of the design file.
@@ -300,7 +308,13 @@ export interface Reinstate {
 export interface LiveEvolve {
   type: "live_evolve";
   id: number;
-  what: "start" | "pause" | "continue" | "change" | "keep" | "discard";
+  /**
+   * `change` and `defaults` are for parameters, whether something evolves or not.
+   */
+  what: "start" | "pause" | "continue" | "change" | "defaults" | "keep" | "discard";
+  /**
+   * Of `start` and `change`; others stay as they are.
+   */
   parameters: {
     [k: string]: unknown;
   };
@@ -413,7 +427,7 @@ export interface PlanGraft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell.
+   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -439,7 +453,7 @@ export interface Graft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell.
+   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -664,6 +678,9 @@ export interface GenerationRow {
 export interface LiveState {
   type: "live";
   status: "none" | "running" | "paused" | "failed";
+  /**
+   * Why it failed or stands still; empty: because it was told to.
+   */
   reason: string;
   generation: number;
   /**
@@ -677,6 +694,10 @@ export interface LiveState {
   parameters: {
     [k: string]: unknown;
   };
+  /**
+   * Names of the parameters that a person changed.
+   */
+  changed: string[];
   /**
    * Factors by address of cells.
    */
@@ -764,6 +785,10 @@ export interface Reply {
    */
   problem: string | null;
   /**
+   * What the problem is about, such as a parameter, where that is known.
+   */
+  key: string | null;
+  /**
    * Cells that the action made or changed.
    */
   cells: string[];
@@ -848,6 +873,10 @@ export interface GraftPlan {
    * Springs of these cells [m].
    */
   springs: number[];
+  /**
+   * Steps of rotation after which it lies as at first; 1: it lies whole in one way only.
+   */
+  turns: number;
   before: GraftFigures | null;
   after: GraftFigures | null;
 }

@@ -142,13 +142,9 @@ export class Viewport {
   pick(x: number, y: number, kinds: Parameters<typeof pick>[4]): Hit | null {
     const { net, motion, view } = store.getState();
     if (!net || !motion) return null;
-    this.projection ??= new Projection(
-      motion,
-      this.eye.camera,
-      this.width,
-      this.height,
-      cutOf(view.section, motion.positions),
-    );
+    const { section } = view;
+    const look = { motion, camera: this.eye.camera, width: this.width, height: this.height, section };
+    if (!this.projection?.holds(look)) this.projection = new Projection(look);
     return pick(net, this.projection, x, y, kinds);
   }
 
@@ -291,7 +287,6 @@ export class Viewport {
   private render(fine: boolean): void {
     const state = store.getState();
     const { net, motion, theme } = state;
-    this.projection = null;
     this.ground.set(GROUND[theme]);
     this.renderer.setClearColor(this.ground);
     const haze = this.eye.haze();
@@ -325,7 +320,7 @@ export class Viewport {
     const lines = this.lines(net, motion, cutOf(view.section, motion.positions));
     this.ribbons.set(lines.count, lines.ends, lines.colours, lines.widths);
     this.hairlines.set(lines.count, lines.ends, lines.colours);
-    this.updateMarks(state, net, endsOf(net, motion.positions));
+    this.updateMarks(state, net, motion);
     this.updateSkin(state, net, motion);
     this.updatePatch(theme);
     this.discs.set(discsOf(state, net, motion));
@@ -340,11 +335,7 @@ export class Viewport {
     return clipped(cut, { count, ends: endsOf(net, motion.positions), colours, widths });
   }
 
-  private updateMarks(
-    { selection, hover, theme, motion }: State,
-    net: Net,
-    ends: Float32Array,
-  ): void {
+  private updateMarks({ selection, hover, theme, view }: State, net: Net, motion: Motion): void {
     const springs = new Set(selectedRows(net, selection, "springs"));
     for (const cell of selectedRows(net, selection, "cells")) {
       for (const spring of groupOf(net.own, cell)) springs.add(spring);
@@ -352,7 +343,8 @@ export class Viewport {
     const chosen = [...springs];
     const lit = hover?.kind === "spring" && !springs.has(hover.row) ? hover.row : -1;
     if (lit >= 0) chosen.push(lit);
-    const count = chosen.length + (this.rubber && motion ? 1 : 0);
+    const count = chosen.length + (this.rubber ? 1 : 0);
+    const ends = endsOf(net, motion.positions);
     const places = new Float32Array(6 * count);
     const colours = new Uint8Array(3 * count);
     const widths = new Float32Array(count);
@@ -362,12 +354,14 @@ export class Viewport {
       widths[at] =
         spring === lit ? SELECTED_WIDTH + 0.6 : selection.kind === "springs" ? SELECTED_WIDTH : 2.2;
     });
-    if (this.rubber && motion) {
+    if (this.rubber) {
       places.set([...this.rubber.from, ...this.rubber.to], 6 * chosen.length);
       colours.set(MARK[theme], 3 * chosen.length);
       widths[chosen.length] = 2.4;
     }
-    this.marked.set(count, places, colours, widths);
+    const cut = cutOf(view.section, motion.positions);
+    const marks = clipped(cut, { count, ends: places, colours, widths });
+    this.marked.set(marks.count, marks.ends, marks.colours, marks.widths);
   }
 
   /** Draws the cells that the patch in the hand would become, over the net. */
