@@ -1,14 +1,18 @@
 // Evolution: its parameters, its course, all individuals, and what becomes of them.
-import { Images, Pause, Play, Square } from "lucide-react";
+import { Columns2, Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
+import { compare } from "../document/comparing";
+import { lookAt, shownSide } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { ask, store } from "../document/store";
 import { ClusterSection, LineageSection } from "./Choosing";
 import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
-import { Choice, Fact, NumberField, Section } from "./parts";
+import { PinButton, PinnedSection } from "./Pins";
+import { Choice, Fact, IconButton, NumberField, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
+import { RankLegend, SortControl } from "./Sorting";
 import { useStudio } from "./use";
 
 /** What a person may set; the rest has the engine's defaults. */
@@ -61,8 +65,11 @@ export function EvolvePanel() {
     <>
       <LiveSection />
       {run && status !== "none" && <Course />}
+      <PinnedSection />
       {run && run.rows.length > 0 && (
         <Section title="Individuals" aside={<GalleryButton />}>
+          <SortControl label="Sorted by" />
+          <RankLegend />
           <Scatter />
           <ParallelCoordinates />
         </Section>
@@ -336,10 +343,7 @@ export function LookingBanner() {
   return (
     <div className="looking" role="status">
       <span>
-        <b>
-          Generation {looking.generation}
-          {looking.individual === null ? ", its parent" : `, individual ${looking.individual}`}
-        </b>
+        <b>{looking.label}</b>
         {figures.springs.toLocaleString("en")} springs, force differential{" "}
         {inDigits(figures.force_differential, 4)}
       </span>
@@ -362,13 +366,17 @@ export function LookingBanner() {
       >
         Breed from this
       </button>
-      <button
-        type="button"
-        className="button"
-        onClick={() => ask({ type: "look", generation: null, individual: null })}
-      >
+      <button type="button" className="button" onClick={() => lookAt("design")}>
         Back to my design
       </button>
+      <PinButton />
+      <IconButton
+        label="Compare with my design"
+        keys="Shift+P"
+        onClick={() => compare("design", shownSide(store.getState().document))}
+      >
+        <Columns2 />
+      </IconButton>
     </div>
   );
 }
