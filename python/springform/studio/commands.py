@@ -11,7 +11,7 @@ from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
 from ..evolution import seek
-from .changes import Action, ValueChange, values_of
+from .changes import Action, Place, ValueChange, values_of
 from .changes import forest_action as _forest
 from .changes import value_action as _value
 from .density import set_density
@@ -140,10 +140,10 @@ def set_framework(design: Design, request: SetFramework) -> Action:
     return Action(label=label, changes=[whole])
 
 
-def whole(design: Design, other: Design, label: str) -> Action:
-    """Return the action that puts another design in place of a design."""
+def whole(design: Design, other: Design, label: str, origin: Place | None = None) -> Action:
+    """Return the action that puts another design in place of a design; it may come from a run."""
     change = ValueChange(path=[], before=values_of(design), after=values_of(other.closed))
-    return Action(label=label, changes=[change])
+    return Action(label=label, changes=[change], origin=origin)
 
 
 # --- cells ----------------------------------------------------------------------------------------

@@ -169,6 +169,23 @@ class Evolving:
                 raise InputError(f"there are generations 0 to {len(self._parents) - 1}")
             return self._parents[generation]
 
+    def standing(self, generation: int) -> tuple[int, int | None]:
+        """Return generation and number of the individual that was the parent after a generation.
+
+        (0, None): it was the start still.
+        """
+        with self._changed:
+            for row in reversed(self.rows[:generation]):
+                if row.winner is not None:
+                    return row.generation, row.winner
+        return 0, None
+
+    def suf(self, generation: int, individual: int) -> float | None:
+        """Return the spring utilization factor of an individual; None if it is undefined."""
+        with self._changed:
+            value = float(self._columns[generation - 1]["suf"][individual])
+        return value if np.isfinite(value) else None
+
     def individual(self, generation: int, individual: int) -> Design:
         """Rebuild an individual. Raises `InputError`: there is no such."""
         if not 1 <= generation <= len(self.rows):

@@ -1,6 +1,8 @@
 // Evolution: its parameters, its course, all individuals, and what becomes of them.
-import { Images, Pause, Play, Square } from "lucide-react";
+import { Columns2, Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
+import { compare } from "../document/comparing";
+import { lookAt, shownSide } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { type ParameterName, type Texts, textOf, valueOf } from "../document/parameters";
 import { ask, askQuietly, notify, store } from "../document/store";
@@ -9,9 +11,11 @@ import { ClusterSection, LineageSection } from "./Choosing";
 import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
 import { ParameterFields } from "./ParameterFields";
-import { Fact, Section } from "./parts";
+import { PinButton, PinnedSection } from "./Pins";
+import { Fact, IconButton, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
+import { RankLegend, SortControl } from "./Sorting";
 import { useStudio } from "./use";
 
 /** What a person may set; the rest has the engine's defaults. */
@@ -60,8 +64,11 @@ export function EvolvePanel() {
     <>
       <LiveSection />
       {run && status !== "none" && <Course />}
+      <PinnedSection />
       {run && run.rows.length > 0 && (
         <Section title="Individuals" aside={<GalleryButton />}>
+          <SortControl label="Sorted by" />
+          <RankLegend />
           <Scatter />
           <ParallelCoordinates />
         </Section>
@@ -240,10 +247,7 @@ export function LookingBanner() {
   return (
     <div className="looking" role="status">
       <span>
-        <b>
-          Generation {looking.generation}
-          {looking.individual === null ? ", its parent" : `, individual ${looking.individual}`}
-        </b>
+        <b>{looking.label}</b>
         {figures.springs.toLocaleString("en")} springs, force differential{" "}
         {inDigits(figures.force_differential, 4)}
       </span>
@@ -266,13 +270,17 @@ export function LookingBanner() {
       >
         Breed from this
       </button>
-      <button
-        type="button"
-        className="button"
-        onClick={() => ask({ type: "look", generation: null, individual: null })}
-      >
+      <button type="button" className="button" onClick={() => lookAt("design")}>
         Back to my design
       </button>
+      <PinButton />
+      <IconButton
+        label="Compare with my design"
+        keys="Shift+P"
+        onClick={() => compare("design", shownSide(store.getState().document))}
+      >
+        <Columns2 />
+      </IconButton>
     </div>
   );
 }

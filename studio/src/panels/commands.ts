@@ -1,8 +1,10 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
+import { isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
+import { CHOOSING_COMMANDS } from "./choosingCommands";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
@@ -13,6 +15,7 @@ export type Group =
   | "Cells"
   | "Selecting"
   | "Grafting"
+  | "Choosing"
   | "Springs and nodes"
   | "Tools"
   | "View"
@@ -102,6 +105,7 @@ function selectSameForce(): void {
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
 export const COMMANDS: Command[] = [
+  ...CHOOSING_COMMANDS,
   ...GRAFT_COMMANDS,
   {
     id: "run",
@@ -400,6 +404,7 @@ export const COMMANDS: Command[] = [
     id: "drawing",
     label: "Export a drawing (SVG)",
     group: "Document",
+    refused: () => (isComparing() ? "close the comparison first" : null),
     run: ({ viewport }) => viewport && exportDrawing(viewport),
   },
   ...MODELS.map(({ name, label }) => ({

@@ -25,6 +25,8 @@ export interface Protocol {
     | Look
     | Follow
     | Reinstate
+    | Pin
+    | Unpin
     | LiveEvolve
     | WeighCells
     | SelectCells
@@ -38,7 +40,7 @@ export interface Protocol {
     | Hold
     | Release
     | Received;
-  event: DocumentState | RunState | LiveState | Patches | Welcome | Reply | Problem;
+  event: DocumentState | RunState | Pins | LiveState | Patches | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
@@ -47,6 +49,8 @@ export interface Protocol {
   lineage: Lineage;
   brushes: Brushes;
   clusters: Clusters;
+  comparing: Comparing;
+  compared: Compared;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -286,6 +290,10 @@ export interface Look {
    * None: the parent that the generation chose.
    */
   individual: number | null;
+  /**
+   * What is pinned, instead of a generation.
+   */
+  pin: number | null;
 }
 /**
  * Show the parent of the newest generation for as long as the run goes on, or no longer.
@@ -301,6 +309,25 @@ export interface Follow {
 export interface Reinstate {
   type: "reinstate";
   id: number;
+}
+/**
+ * Pin a net, so that it is at hand whatever becomes of its run.
+ */
+export interface Pin {
+  type: "pin";
+  id: number;
+  /**
+   * None: what is shown.
+   */
+  side: string | null;
+}
+/**
+ * Let a pinned net go.
+ */
+export interface Unpin {
+  type: "unpin";
+  id: number;
+  pin: number;
 }
 /**
  * Let the net evolve before one's eyes, steer it, and keep or discard what it grew.
@@ -550,6 +577,27 @@ export interface HistoryLine {
    * Actions done once this one is, from 1.
    */
   number: number;
+  /**
+   * Where the net was taken from, if it was taken over as a whole.
+   */
+  origin: Place | null;
+}
+/**
+ * Where a net comes from: a parent or an individual of a run.
+ */
+export interface Place {
+  /**
+   * Folder of the run: within the document's folder, such as ``runs/0001``, or absolute.
+   */
+  run: string;
+  /**
+   * 0 is the start.
+   */
+  generation: number;
+  /**
+   * None: the parent for the next generation.
+   */
+  individual: number | null;
 }
 /**
  * Measures of the net at equilibrium.
@@ -613,11 +661,22 @@ export interface SpringGroupLine {
   says: string;
 }
 /**
- * A parent or an individual that is shown instead of the design.
+ * A parent, an individual or something pinned that is shown instead of the design.
  */
 export interface Looked {
-  generation: number;
+  /**
+   * Such as ``Generation 34, individual 2``.
+   */
+  label: string;
+  /**
+   * In the document's run; None: it is pinned, and of no run or of an earlier one.
+   */
+  generation: number | null;
   individual: number | null;
+  /**
+   * Of what is in no generation of the run.
+   */
+  pin: number | null;
 }
 /**
  * The run of the document.
@@ -627,6 +686,10 @@ export interface RunState {
   status: "none" | "running" | "paused" | "ended" | "failed";
   reason: string;
   folder: string;
+  /**
+   * The folder as pins and the history name it.
+   */
+  name: string;
   /**
    * Another process that drives it; empty: this studio does, or nobody.
    */
@@ -671,6 +734,32 @@ export interface GenerationRow {
    * Parameters were changed after it.
    */
   changed: boolean;
+}
+/**
+ * What is pinned, in the order in which it was.
+ */
+export interface Pins {
+  type: "pins";
+  pins: PinState[];
+}
+/**
+ * A pinned net.
+ */
+export interface PinState {
+  number: number;
+  /**
+   * Such as ``Generation 34, individual 2``.
+   */
+  label: string;
+  /**
+   * None: it was the design, after actions of its own.
+   */
+  place: Place | null;
+  /**
+   * Spring utilization factor in its run; None if it is undefined.
+   */
+  suf: number | null;
+  figures: Figures;
 }
 /**
  * Live evolution, and the cells that were brushed.
@@ -1088,4 +1177,59 @@ export interface Cluster {
   generation: number;
   individual: number;
   size: number;
+}
+/**
+ * Ask for two nets, compared.
+ */
+export interface Comparing {
+  first: string;
+  second: string;
+}
+/**
+ * Two nets, compared.
+ */
+export interface Compared {
+  first: ComparedNet;
+  second: ComparedNet;
+  /**
+   * Top-level cells whose subtrees differ; None on different frameworks.
+   */
+  changed: number | null;
+  types: ComparedCount[];
+  reactions: ComparedReaction[];
+}
+/**
+ * One of two nets at equilibrium.
+ */
+export interface ComparedNet {
+  label: string;
+  figures: Figures;
+  /**
+   * Standard deviation of the forces [N].
+   */
+  force_deviation: number;
+  /**
+   * Sum of force times length [N m].
+   */
+  load_path: number;
+  /**
+   * Of all anchors [N].
+   */
+  largest_reaction: number;
+}
+/**
+ * Expressed cells of a type.
+ */
+export interface ComparedCount {
+  name: string;
+  first: number;
+  second: number;
+}
+/**
+ * What holds an anchor [N]; None where a net does not have it.
+ */
+export interface ComparedReaction {
+  anchor: string;
+  first: number | null;
+  second: number | null;
 }
