@@ -28,6 +28,7 @@ class Server:
     port: int
     token: str
     document: str
+    home: Path
 
     @property
     def host(self) -> str:
@@ -64,16 +65,19 @@ class Server:
 
 
 @contextmanager
-def serving(home: Path, source: str = "one-cylinder") -> Iterator[Server]:
-    """Run a studio on a source, in a folder of documents; it is killed at the end."""
-    words = [COMMAND, "studio", source, "--home", str(home), "--no-browser", "--json"]
+def serving(
+    home: Path, source: str = "one-cylinder", document: str | None = None
+) -> Iterator[Server]:
+    """Run a studio on a source, or on a document of before; it is killed at the end."""
+    named = [] if document else [source]
+    words = [COMMAND, "studio", *named, "--home", str(home), "--no-browser", "--json"]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
         told = json.loads(process.stdout.readline())
-        address, document = told["address"].split("#")
+        address, _, opened = told["address"].partition("#")
         port, token = int(address.split(":")[2].split("/")[0]), address.split("token=")[1]
-        yield Server(process, port, token, document)
+        yield Server(process, port, token, document or opened, home)
     finally:
         process.kill()
         process.wait()

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from springform import _core, load
-from springform.grafting import symmetries
+from springform import Design, _core, load
+from springform.errors import InputError
+from springform.grafting import graft, symmetries
 from springform.patch_file import load_patch
 from springform.selections import select
+from springform.studio.changes import apply
+from springform.studio.commands import edit_spring
 from springform.studio.grafts import frames_around, graft_figures
+from springform.studio.messages import EditSpring
 from springform.studio.patches import tiles_of
 from studio_client import Server, Window, serving
 
@@ -87,7 +91,7 @@ def test_a_plan_changes_nothing_and_a_graft_is_one_action(server: Server) -> Non
         assert window.ask(type="undo", redo=False)["problem"] is None
         assert server.state()["figures"] == before["figures"]
         turned = window.ask(type="plan_graft", measure=False, **PLACE | {"rotate": 1})["answer"]
-        assert [one["cell"] for one in turned["placed"]] != [o["cell"] for o in plan["placed"]]
+        assert turned["placed"] == plan["placed"]
 
 
 def test_what_does_not_fit_says_why(server: Server) -> None:
@@ -140,12 +144,44 @@ def test_frames_round_an_anchor_put_the_corner_on_it(server: Server, tmp_path: P
     design, patch = load("three-cylinders"), load_patch(tmp_path / "patches" / "crown.toml")
     for anchor, vertex in zip(design.anchor_names, design.anchor_vertices, strict=True):
         for mirror in (False, True):
-            frames = frames_around(design, patch, anchor, mirror=mirror)
-            touching = (design.mesh.faces == vertex).any(axis=1).sum()
-            assert len({face for face, _, _ in frames}) == touching
-            assert all(design.mesh.faces[face][turn] == vertex for face, turn, _ in frames)
+            # On a ring it would lie half beyond the border if it were turned.
+            [frame] = frames_around(design, patch, anchor, mirror=mirror)
+            assert design.mesh.faces[frame[0]][frame[1]] == vertex
+            assert graft(design, patch, at=[frame]).skipped == ()
+            assert frame[2] is mirror
         best = _core.best_frame(design.setting, patch.core(), vertex)
         assert frames_around(design, patch, anchor, mirror=False)[0] == best
+
+
+def test_a_patch_turns_round_an_anchor_as_far_as_it_stays_whole(server: Server) -> None:
+    with server.window() as window:
+        lift_crown(window)
+        node = "v31"
+        assert window.ask(type="fix_node", node=node, fixed=True)["problem"] is None
+        inner = server.state()["anchors"][-1]["name"]
+        around = select_words(window, f"rings({inner}, 1)")
+        one = {"type": "edit_cells", "what": "subdivide", "cells": around[:1], "kind": "1"}
+        assert window.ask(**one)["problem"] is None
+        cells = select_words(window, f"rings({inner}, 1)")
+        copied = {"type": "copy_patch", "name": "flower", "cells": cells, "anchor": inner}
+        assert window.ask(**copied, seed=None)["problem"] is None
+        assert window.ask(type="undo", redo=False)["problem"] is None
+        place = PLACE | {"patch": "flower", "anchor": inner}
+        plans = [
+            window.ask(type="plan_graft", measure=False, **place | {"rotate": turn})["answer"]
+            for turn in range(5)
+        ]
+        assert [plan["turns"] for plan in plans] == [4] * 5
+        assert all(plan["skipped"] == [] for plan in plans)
+        seeds = [plan["placed"][0]["cell"] for plan in plans]
+        assert set(seeds[:4]) == {int(cell.split(".")[0]) for cell in around}
+        assert seeds[4] == seeds[0]
+        # On the rings nothing is lost by a rotation either: the patch lies in its one way.
+        crown = PLACE | {"anchor": "A3"}
+        for turn in range(3):
+            asked = {"type": "plan_graft", "measure": False, **crown, "rotate": turn}
+            plan = window.ask(**asked)["answer"]
+            assert (plan["turns"], plan["skipped"]) == (1, [])
 
 
 @pytest.mark.parametrize("what", ["subdivide", "retype", "off"])
@@ -168,6 +204,101 @@ def test_the_lock_edits_the_whole_orbit(server: Server, what: str) -> None:
         assert window.ask(**divide | {"cells": ["41"]})["problem"] is None
         assert window.ask(type="ask_symmetry")["answer"]["broken"]
         assert server.state()["position"] == done + 1
+
+
+def springs_of(design: Design) -> set[frozenset[str]]:
+    nodes = design.nodes
+    return {frozenset((nodes[a], nodes[b])) for a, b in design.network().springs.tolist()}
+
+
+def images_of(design: Design, pair: Iterable[str]) -> set[frozenset[str]]:
+    """Return where the symmetries carry a spring, by its ends: the slow way."""
+    group = symmetries(design)
+    ends = [group.node_images(design.mesh, node) for node in pair]
+    return {frozenset(image) for image in zip(*ends, strict=True)}
+
+
+@pytest.mark.parametrize(("scene", "kinds"), [("three-cylinders", 1), ("one-cylinder-quad", 2)])
+def test_the_lock_cuts_and_adds_whole_orbits_of_springs(scene: str, kinds: int) -> None:
+    design = load(scene)
+    before = springs_of(design)
+    # Some lie across a mirror, which carries them to themselves; some share ends with their images.
+    sizes = set()
+    for pair in sorted(before, key=sorted)[::7]:
+        asked = EditSpring(id=1, what="cut", nodes=sorted(pair), orbit=True)
+        action = edit_spring(design, asked)
+        cut = apply(design, action)
+        orbit = images_of(design, sorted(pair))
+        sizes.add(len(orbit))
+        assert before - springs_of(cut) >= orbit
+        symmetries(design).check(cut.setting, cut.closed.forest)
+        again = asked.model_copy(update={"what": "add"})
+        assert springs_of(apply(cut, edit_spring(cut, again))) == before
+        with pytest.raises(InputError, match="already"):
+            edit_spring(cut, asked)
+    assert len(sizes) == kinds
+    ends = sorted(design.nodes[row] for row in design.anchors[:2])
+    asked = EditSpring(id=1, what="add", nodes=ends, orbit=True)
+    added = apply(design, edit_spring(design, asked))
+    assert springs_of(added) - before == images_of(design, ends)
+    assert (
+        springs_of(apply(added, edit_spring(added, asked.model_copy(update={"what": "cut"}))))
+        == before
+    )
+
+
+def test_an_orbit_of_springs_that_would_break_a_rule_is_refused_whole(server: Server) -> None:
+    design = load("three-cylinders")
+    with server.window() as window:
+        state = server.state()
+        a1 = design.nodes[design.anchors[0]]
+        at_anchor = [sorted(pair) for pair in springs_of(design) if a1 in pair]
+        replies = [
+            window.ask(type="edit_spring", what="cut", nodes=nodes, orbit=True)["problem"]
+            for nodes in at_anchor
+        ]
+        assert any(replies), "an anchor without springs is no net"
+        now = server.state()
+        done = now["position"]
+        assert done == replies.count(None)
+        assert now["figures"]["springs"] < state["figures"]["springs"]
+        assert [line["label"] for line in now["history"]][0] == "Cut 12 springs, symmetrically"
+        assert window.ask(type="travel", position=0)["problem"] is None
+        assert server.state()["figures"] == state["figures"]
+        # One of the images is no spring any more, because a cell there is divided.
+        nodes = at_anchor[0]
+        other = next(iter(images_of(design, nodes) - {frozenset(nodes)}))
+        square = next(
+            address
+            for address, ring in zip(window.net["addresses"], window.net["boundaries"], strict=True)
+            if other <= set(ring)
+        )
+        divide = {"type": "edit_cells", "what": "subdivide", "cells": [square], "kind": "1"}
+        assert window.ask(**divide)["problem"] is None
+        before = server.state()
+        refused = window.ask(type="edit_spring", what="cut", nodes=nodes, orbit=True)["problem"]
+        assert "is no spring of the net, though an image of it is" in refused
+        assert server.state() == before
+
+
+def test_the_lock_holds_for_stress_seeking(server: Server) -> None:
+    with server.window() as window:
+        asked = {"type": "seek_stress", "steps": 1, "kind": "1"}
+        reply = window.ask(**asked, orbit=True)
+        divided = {cell.rsplit(".", 1)[0] for cell in reply["cells"]}
+        design = load("three-cylinders")
+        first = int(min(divided, key=int))
+        assert divided == {str(face) for face, _, _ in symmetries(design).images((first, 0, False))}
+        assert window.ask(**asked | {"steps": 2}, orbit=True)["problem"] is None
+        state = server.state()
+        labels = [line["label"] for line in state["history"]]
+        assert labels == [
+            "Seek stress, 1 step, symmetrically",
+            "Seek stress, 2 steps, symmetrically",
+        ]
+        assert window.ask(type="ask_symmetry")["answer"]["broken"] == ""
+        assert window.ask(**asked)["problem"] is None
+        assert "differ" in window.ask(**asked, orbit=True)["problem"]
 
 
 def test_a_loose_end_is_counted() -> None:

@@ -14,17 +14,21 @@ import pytest
 import springform as sf
 from springform.errors import InputError
 from springform.studio.live import Live
-from studio_client import Window, serving
+from springform.studio.live_file import Standing, read_standing
+from studio_client import Server, Window, serving
 
 DESIGN = sf.load("one-cylinder")
 
 
 class Watched:
-    """A live evolution, and a way to wait for its generations."""
+    """A live evolution, what it puts on the disk, and a way to wait for its generations."""
 
-    def __init__(self, **parameters: Any) -> None:
+    def __init__(self, standing: Standing | None = None, **parameters: Any) -> None:
         self.told = threading.Event()
-        self.live = Live(DESIGN, {"population": 8} | parameters, self.told.set)
+        self.kept: list[Standing] = []
+        values = {"population": 8} | parameters
+        design = DESIGN if standing is None else standing.grown()
+        self.live = Live(design, values, self.told.set, self.kept.append, standing)
 
     def until(self, generation: int) -> None:
         while self.live.generation < generation:
@@ -87,6 +91,62 @@ def test_an_anchor_moves_in_a_pause_and_no_generation_is_made(watched: Watched) 
     watched.until(made + 1)
 
 
+def test_what_was_put_on_the_disk_goes_on_as_if_nothing_had_been(watched: Watched) -> None:
+    watched.until(3)
+    watched.live.move_anchor("A1", (0.5, 0.25, 3.0))
+    watched.live.change({"insertions": "2"})
+    watched.until(watched.live.generation + 3)
+    watched.live.pause()
+    while watched.kept[-1].generation != watched.live.generation:
+        watched.told.wait(30)
+        watched.told.clear()
+    standing = watched.kept[-1]
+    assert Standing.model_validate_json(standing.model_dump_json()) == standing
+    again = Watched(standing, insertions="2")
+    try:
+        assert (again.live.status, again.live.generation) == ("paused", standing.generation)
+        assert list(again.live.points) == list(watched.live.points)
+        assert again.live.grown.design.forest == watched.live.grown.design.forest
+        for one in (watched, again):
+            one.live.go_on()
+            one.until(standing.generation + 4)
+    finally:
+        again.live.close()
+    after = [list(one.live.points) for one in (watched, again)]
+    number = len(standing.points) + 4
+    assert after[0][:number] == after[1][:number]
+
+
+def test_a_goal_is_a_pause_that_can_be_passed() -> None:
+    watched = Watched(until_springs=len(DESIGN.network().springs) + 10)
+    try:
+        while watched.live.status == "running":
+            watched.told.wait(30)
+            watched.told.clear()
+        reached = watched.live.points[-1]
+        assert (watched.live.status, watched.live.reason) == (
+            "paused",
+            "the number of springs is reached",
+        )
+        assert reached.springs >= watched.live.parameters.until_springs
+        assert all(p.springs < reached.springs for p in list(watched.live.points)[:-1])
+        watched.live.go_on()
+        watched.until(reached.generation + 3)
+    finally:
+        watched.live.close()
+
+
+def test_parameters_are_refused_before_they_count(watched: Watched) -> None:
+    for name, value in (("population", 0), ("types", ["9"]), ("insertions", "a lot")):
+        with pytest.raises(InputError) as refused:
+            watched.live.change({name: value})
+        assert refused.value.key == name
+    watched.live.change({"weighting": "stress"})
+    watched.until(watched.live.generation + 2)
+    assert watched.live.parameters.weighting == "stress"
+    assert watched.live.parameters.population == 8
+
+
 @pytest.fixture
 def window(tmp_path: Path) -> Iterator[Window]:
     with serving(tmp_path / "home") as server, server.window() as one:
@@ -134,3 +194,66 @@ def test_keeping_is_one_action_and_discarding_none(window: Window) -> None:
     assert window.ask(type="undo", redo=True)["problem"] is None
     window.settle()
     assert json.dumps(window.document["figures"]) == kept
+
+
+def test_parameters_are_changed_before_and_while_it_evolves(window: Window) -> None:
+    window.settle()
+    change = {"type": "live_evolve", "what": "change"}
+    reply = window.ask(**change, parameters={"population": 0})
+    assert reply["key"] == "population"
+    assert reply["problem"].startswith("population: must be greater than or equal to 1")
+    assert window.ask(**change, parameters={"types": ["9"]})["key"] == "types"
+    assert window.ask(**change, parameters={"population": 12})["problem"] is None
+    assert window.ask(type="live_evolve", what="start")["problem"] is None
+    state = live_at(window, 2)
+    assert (state["parameters"]["population"], state["changed"]) == (12, ["population"])
+    assert window.ask(**change, parameters={"fitness": "differential"})["problem"] is None
+    state = live_at(window, state["generation"] + 2)
+    assert state["parameters"]["fitness"] == "differential"
+    assert window.ask(**change, parameters={"insertions": "a lot"})["key"] == "insertions"
+    assert window.ask(type="live_evolve", what="defaults")["problem"] is None
+    state = live_at(window, state["generation"] + 2)
+    assert (state["parameters"]["population"], state["changed"]) == (100, [])
+
+
+def begin(server: Server, window: Window) -> dict[str, Any]:
+    """Brush, change a parameter and let it evolve; return what windows are told then."""
+    window.settle()
+    assert window.ask(type="weigh_cells", cells=["0", "1"], factor=0)["problem"] is None
+    change = {"type": "live_evolve", "what": "change", "parameters": {"population": 9}}
+    assert window.ask(**change)["problem"] is None
+    assert window.ask(type="live_evolve", what="start")["problem"] is None
+    live_at(window, 5)
+    assert window.ask(type="live_evolve", what="pause")["problem"] is None
+    folder = server.home / server.document
+    while True:
+        state = live_at(window, 5)
+        standing = read_standing(folder)
+        if state["status"] == "paused" and standing is not None:
+            if standing.generation == state["generation"]:
+                return state
+        window.ask(type="live_evolve", what="pause")
+
+
+def test_a_killed_studio_takes_it_up_where_it_stood(tmp_path: Path) -> None:
+    with serving(tmp_path / "home") as server, server.window() as window:
+        before = begin(server, window)
+        nodes = window.net["nodes"]
+    with serving(tmp_path / "home", document=server.document) as again, again.window() as window:
+        after = live_at(window, 0)
+        assert after["status"] == "paused"
+        assert after["reason"]
+        same = ("generation", "points", "parameters", "weights", "changed")
+        assert {name: after[name] for name in same} == {name: before[name] for name in same}
+        while not window.net:
+            window.receive()
+        assert window.net["nodes"] == nodes
+        assert window.ask(type="live_evolve", what="continue")["problem"] is None
+        live_at(window, before["generation"] + 3)
+        assert window.ask(type="live_evolve", what="keep")["problem"] is None
+        assert again.state()["position"] == 1
+    # What was kept is in the document, and not taken up a second time.
+    with serving(tmp_path / "home", document=server.document) as last, last.window() as window:
+        state = live_at(window, 0)
+        assert (state["status"], state["weights"]) == ("none", before["weights"])
+        assert last.state()["position"] == 1

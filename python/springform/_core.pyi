@@ -32,6 +32,7 @@ __all__ = [
     "check_patch",
     "graft_patch",
     "lift",
+    "misfits",
     "residuals",
     "solve",
     "turned_patch",
@@ -565,6 +566,9 @@ def check_patch(setting: Setting, patch: _Patch) -> None:
 def best_frame(setting: Setting, patch: _Patch, vertex: int) -> _Frame | None:
     """Return the frame at a base vertex in which a patch fits best."""
 
+def misfits(setting: Setting, patch: _Patch, frames: list[_Frame]) -> list[tuple[int, int]]:
+    """Return how badly a patch lies in frames: cells skipped, sides free that were not or were."""
+
 def turned_patch(setting: Setting, patch: _Patch, turn: int, mirrored: bool) -> _Patch:
     """Return a patch as it is seen after quarter turns, mirrored or not."""
 
@@ -699,9 +703,11 @@ class Census:
 class StressSeeking:
     """A net that is refined where its force is."""
 
-    def __new__(cls, setting: Setting, forest: Forest) -> StressSeeking: ...
-    def advance(self, kind: str) -> list[str]:
-        """Subdivide the cell of highest inner force; return the edits, none if there is no cell."""
+    def __new__(
+        cls, setting: Setting, forest: Forest, kind: str, *, symmetries: Symmetries | None = None
+    ) -> StressSeeking: ...
+    def advance(self) -> list[str]:
+        """Subdivide the cell of highest inner force, or its orbit; the edits, none if none is left."""
 
     def reached(
         self, step: int, steps: int | None, differential: float | None, suf: float | None

@@ -167,19 +167,25 @@ def seek(
     type: int | str = 1,
     until_differential: float | None = None,
     until_suf: float | None = None,
+    symmetry: bool = False,
 ) -> Iterator[SeekStep]:
     """Subdivide the cell of highest inner force, solve, repeat (the paper, section 3.5).
 
-    Yields every step; ends after `steps`, at a condition, or when no cell can be divided.
-    Raises `InputError`: a type that the method does not allow, or a design that gives no net.
+    Yields every step; ends after `steps`, at a condition, or when no cell can be divided. With
+    `symmetry` a step subdivides the whole orbit of that cell under the framework's symmetries.
+    Raises `InputError`: a type that the method does not allow, a design that gives no net, or one
+    that does not have the symmetries.
     """
     checked_parameters({"until_differential": until_differential, "until_suf": until_suf})
     design.network()
-    kind = _refused(lambda: design.setting.cell_type(str(type)), key="type")
-    seeking = _refused(lambda: _core.StressSeeking(design.setting, design.closed.forest))
     now = design.closed
+    kind = _refused(lambda: design.setting.cell_type(str(type)), key="type")
+    group = _refused(lambda: _core.Symmetries(design.setting)) if symmetry else None
+    seeking = _refused(
+        lambda: _core.StressSeeking(design.setting, now.forest, kind, symmetries=group)
+    )
     for step in range(1, steps + 1):
-        edits = _refused(lambda: seeking.advance(kind))
+        edits = _refused(seeking.advance)
         if not edits:
             return
         now = now.edited(edits)

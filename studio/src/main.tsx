@@ -12,5 +12,6 @@ import "./panels/editing.css";
 import "./panels/start.css";
 import "./panels/evolve.css";
 import "./panels/framework.css";
+import "./panels/choose.css";
 
 createRoot(document.getElementById("root")!).render(<App />);

@@ -42,6 +42,7 @@ test("picking at 20,000 springs", async ({ page, open }) => {
   const net = kept.net!;
   const motion = kept.motion!;
   const camera = new THREE.PerspectiveCamera(32, 1.25, 0.1, 100);
+  const look = { motion, camera, width: 900, height: 720, section: null };
   camera.up.set(0, 0, 1);
   camera.position.set(6, -10, 6);
   camera.lookAt(0, 0, 2);
@@ -51,7 +52,7 @@ test("picking at 20,000 springs", async ({ page, open }) => {
   for (let at = 0; at < 300; at++) {
     const [x, y] = [(at * 37) % 900, (at * 53) % 720];
     const began = performance.now();
-    const projection = new Projection(motion, camera, 900, 720);
+    const projection = new Projection(look);
     pick(net, projection, x, y, ALL);
     const between = performance.now();
     pick(net, projection, x + 1, y, ALL);
@@ -64,6 +65,55 @@ test("picking at 20,000 springs", async ({ page, open }) => {
       `${quantile(warm, 0.95).toFixed(2)} ms in a view that stays`,
   );
 });
+
+test("a lasso in a page at 20,000 springs", async ({ page, open }) => {
+  await open("three-cylinders-dense");
+  await finer(page, 1);
+  await finer(page, 2);
+  await page.waitForTimeout(3000);
+  const springs = (await documentOf(page)).figures.springs;
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Shift+L");
+  await page.mouse.move(880, 420);
+  await page.mouse.down();
+  const { moves, drop } = await page.evaluate(lassoRound, { x: 540, y: 420, radius: 340, steps: 240 });
+  const title = await page.locator(".section h2").first().textContent();
+  await page.mouse.up();
+  console.log(
+    `a lasso in ${springs} springs: 95 % of ${moves.length} moves within ${quantile(moves, 0.95).toFixed(1)} ms, ` +
+      `the slowest ${Math.max(...moves).toFixed(1)} ms; ${title} selected in ${drop.toFixed(0)} ms`,
+  );
+});
+
+/** In the page: draws a lasso, and tells how long the page was busy with every move and with the end [ms]. */
+async function lassoRound(way: { x: number; y: number; radius: number; steps: number }) {
+  const canvas = document.querySelector("main.viewport canvas")!;
+  const point = (type: string, step: number) => {
+    const angle = (2 * Math.PI * step) / way.steps;
+    const clientX = way.x + way.radius * Math.cos(angle);
+    const clientY = way.y + way.radius * Math.sin(angle);
+    canvas.dispatchEvent(new PointerEvent(type, { clientX, clientY, bubbles: true, button: 0 }));
+  };
+  // From when the browser begins with the picture until it is done with it.
+  const picture = () =>
+    new Promise<number>((resolve) => {
+      requestAnimationFrame((began) => {
+        const { port1, port2 } = new MessageChannel();
+        port1.onmessage = () => resolve(performance.now() - began);
+        port2.postMessage(null);
+      });
+    });
+  const moves: number[] = [];
+  for (let step = 1; step < way.steps; step++) {
+    point("pointermove", step);
+    moves.push(await picture());
+  }
+  const began = performance.now();
+  point("pointerup", way.steps - 1);
+  const drop = performance.now() - began;
+  await picture();
+  return { moves, drop };
+}
 
 test("pointer to positions in a page at 3,000 springs", async ({ page, open }) => {
   await page.addInitScript(watchLine);

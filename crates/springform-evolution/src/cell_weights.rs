@@ -20,6 +20,11 @@ impl CellWeights {
         CellWeights { factors, kept }
     }
 
+    /// Every cell has factor 1.
+    pub fn is_empty(&self) -> bool {
+        self.factors.is_empty()
+    }
+
     /// Factor on the weight of a cell; 0: mutation never draws it.
     pub fn of(&self, place: Place) -> f64 {
         if self.kept.contains(&place) {

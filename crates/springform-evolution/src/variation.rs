@@ -29,7 +29,8 @@ pub struct Variation {
     pub orbits: Option<Orbits>,
     /// The region outside of which mutation changes nothing; closing may.
     pub within: Option<Selection>,
-    /// Factors on the chance that a cell is drawn. Under symmetries those of the cells that stand for their orbits count.
+    /// Factors on the chance that a cell is drawn. Under symmetries an orbit has the mean of its cells' factors, or 0
+    /// if one of them has 0: who keeps evolution out of a cell keeps it out of all that would change with it.
     pub cell_weights: CellWeights,
 }
 
@@ -46,13 +47,29 @@ impl Default for Variation {
 }
 
 impl Variation {
-    /// Factor on the weight of a cell; 0 if it is outside the region or does not stand for its orbit.
+    /// Factor on the weight of a cell; 0 if it does not stand for its orbit, or the orbit leaves the region.
     pub fn factor(&self, place: Place) -> f64 {
         let stands = self.orbits.as_ref().is_none_or(|orbits| orbits.represents(place));
-        if stands { self.factor_in_region(place) } else { 0.0 }
+        if stands { self.factor_of_orbit(place) } else { 0.0 }
     }
 
-    fn factor_in_region(&self, place: Place) -> f64 {
+    /// Factor that all cells of an orbit share; without symmetries that of the cell.
+    pub fn factor_of_orbit(&self, place: Place) -> f64 {
+        let Some(orbits) = &self.orbits else { return self.factor_of_cell(place) };
+        if self.within.is_none() && self.cell_weights.is_empty() {
+            return 1.0;
+        }
+        let mut factors: Vec<f64> =
+            orbits.images(place).into_iter().map(|image| self.factor_of_cell(image)).collect();
+        if factors.contains(&0.0) {
+            return 0.0;
+        }
+        // In one order, so that the sum is the same to the bit whichever cell carries which factor.
+        factors.sort_unstable_by(f64::total_cmp);
+        factors.iter().sum::<f64>() / factors.len() as f64
+    }
+
+    fn factor_of_cell(&self, place: Place) -> f64 {
         let inside = self.within.as_ref().is_none_or(|within| within.contains(place));
         if inside { self.cell_weights.of(place) } else { 0.0 }
     }
@@ -88,7 +105,7 @@ impl Variation {
         for _ in 0..draws.below(most + 1) {
             let gene = &self.genes[draws.below(self.genes.len() as u32) as usize];
             let Some(frame) = draw_frame(setting, gene, &mirrors, draws) else { continue };
-            let may_write = |place| self.factor_in_region(place) > 0.0;
+            let may_write = |place| self.factor_of_orbit(place) > 0.0;
             let placed = graft(&setting.mesh, forest, (gene, frame), &mirrors, &mut taken, may_write, edits)?;
             grafted.extend(placed.faces);
         }

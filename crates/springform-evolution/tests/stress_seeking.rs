@@ -6,10 +6,13 @@ use proptest::prelude::*;
 use runs::common::{Dice, cases, stored_cells};
 use runs::starts;
 use springform_evolution::stress_seeking::StressSeeking;
+use springform_topology::address::Place;
 use springform_topology::cell_type::CellTypeId;
 use springform_topology::edit::Edit;
 use springform_topology::filters::Method;
-use springform_topology::forest::Content;
+use springform_topology::forest::{Content, Forest};
+use springform_topology::symmetry::{Orbits, symmetries};
+use std::collections::BTreeSet;
 
 /// Steps of one random run.
 const STEPS: u32 = 5;
@@ -38,7 +41,7 @@ proptest! {
             let cell = seeking.phenotype().expression.cells[hottest];
             let stored = seeking.forest().children(cell.index).is_some();
             let mut before = seeking.forest().clone();
-            let Ok(edits) = seeking.advance(&start.setting, kind) else {
+            let Ok(edits) = seeking.advance(&start.setting, kind, None) else {
                 prop_assert_eq!(seeking.forest(), &before, "a refused step changes nothing");
                 break;
             };
@@ -66,11 +69,39 @@ proptest! {
         let mut seeking = StressSeeking::new(&start.setting, start.forest).expect("the start gives a net");
         for _ in 0..STEPS {
             let before = seeking.phenotype().measures;
-            seeking.advance(&start.setting, kind).expect("a refined net is a net");
+            seeking.advance(&start.setting, kind, None).expect("a refined net is a net");
             let after = seeking.phenotype().measures;
             let least = before.springs + u32::from(start.setting.method != Method::Recursive);
             prop_assert!(after.springs >= least, "{} after {}", after.springs, before.springs);
             prop_assert!(after.cells >= before.cells + 3);
+        }
+    }
+
+    /// With orbits a step refines the whole orbit of a hottest cell, and the forest keeps the symmetries.
+    #[test]
+    fn with_orbits_a_step_refines_a_whole_orbit(start in starts(0), number: u32) {
+        let setting = &start.setting;
+        let Ok(group) = symmetries(&setting.mesh, &setting.anchors) else { return Ok(()) };
+        let kind = child_type(setting.method, number);
+        let plain = Forest::new(start.forest.top_level(), Content::QUAD);
+        let types = BTreeSet::from([kind]);
+        let orbits = Orbits::new(&group, plain.top_level(), &setting.catalogue, &types).expect("types have images");
+        let Ok(mut seeking) = StressSeeking::new(setting, plain) else { return Ok(()) };
+        for _ in 0..STEPS {
+            let inner = seeking.phenotype().inner_forces();
+            let highest = inner.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let hottest = inner.iter().position(|&force| force == highest).expect("a cell");
+            let cell = seeking.phenotype().expression.cells[hottest].place;
+            let mut before = seeking.forest().clone();
+            let Ok(edits) = seeking.advance(setting, kind, Some(&orbits)) else { break };
+            let images: BTreeSet<Place> = group.iter().map(|one| one.place(cell)).collect();
+            let divided: BTreeSet<Place> = edits.iter().filter(|edit| matches!(edit, Edit::Subdivide { .. }))
+                .filter_map(Edit::cell).collect();
+            prop_assert!(images.is_subset(&divided));
+            prop_assert!(images == divided || setting.method == Method::Recursive);
+            prop_assert_eq!(Edit::apply_all(&edits, &mut before), Ok(()));
+            prop_assert_eq!(&before, seeking.forest());
+            prop_assert_eq!(orbits.check(&setting.mesh, seeking.forest(), &group), Ok(()));
         }
     }
 }

@@ -20,7 +20,7 @@ use springform_topology::patch::{Patch, Viewpoint, lift};
 use springform_topology::selection::Selection;
 use springform_topology::symmetry::{Orbits, symmetries};
 use springform_topology::tree::Tree;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 fn begin(start: &Start, dice: &mut Dice, variation: Variation) -> Option<Evolution> {
     let parameters = runs::parameters(start.setting.method, dice);
@@ -129,6 +129,61 @@ proptest! {
             individuals.map(|all| all.into_iter().map(|one| one.edits).collect::<Vec<_>>())
         };
         prop_assert_eq!(edits(plain), edits(weighted));
+    }
+
+    /// An orbit's factor is the mean of its cells', 0 if one of them is kept out of, whichever cells were brushed.
+    #[test]
+    fn orbits_have_one_factor(start in starts(8), mut dice in dice(60)) {
+        let setting = &start.setting;
+        let Ok(group) = symmetries(&setting.mesh, &setting.anchors) else { return Ok(()) };
+        let types = (0..7).map(CellTypeId).collect();
+        let orbits = Orbits::new(&group, start.forest.top_level(), &setting.catalogue, &types).expect("images");
+        let mut places = Vec::new();
+        start.forest.visit_reachable(|_, place| places.push(place));
+        let brushed: Vec<(Place, f64)> = (0..6)
+            .map(|_| (dice.pick(&places), f64::from(dice.pick(&[0, 1, 1, 3, 7, 10, 100]))))
+            .collect();
+        let one = &group[dice.below(group.len() as u32) as usize];
+        let variation = |factors: Vec<(Place, f64)>| Variation {
+            orbits: Some(orbits.clone()), cell_weights: CellWeights::new(factors), ..Variation::default()
+        };
+        let carried: BTreeMap<Place, f64> =
+            brushed.iter().map(|&(place, factor)| (one.place(place), factor)).collect();
+        let (here, there) = (variation(brushed.clone()), variation(carried.into_iter().collect()));
+        for place in places {
+            let factor = here.factor_of_orbit(place);
+            prop_assert_eq!(factor, here.factor_of_orbit(one.place(place)), "whichever cell is asked");
+            prop_assert_eq!(factor, there.factor_of_orbit(place), "whichever cells are brushed");
+            let images: BTreeSet<Place> = group.iter().map(|one| one.place(place)).collect();
+            let each: Vec<f64> = images.iter().map(|&image| here.cell_weights.of(image)).collect();
+            let mean = each.iter().sum::<f64>() / each.len() as f64;
+            let expected = if each.contains(&0.0) { 0.0 } else { mean };
+            prop_assert!((factor - expected).abs() <= 1e-12 * expected);
+            let stands = images.first() == Some(&place);
+            prop_assert_eq!(here.factor(place), if stands { factor } else { 0.0 });
+        }
+    }
+
+    /// Under symmetries too, cells of factor 0 stay as they are, and so do all their images.
+    #[test]
+    fn what_is_kept_out_of_stays_in_all_its_images(mut start in starts(0), mut dice in dice(60)) {
+        let setting = &start.setting;
+        let Ok(group) = symmetries(&setting.mesh, &setting.anchors) else { return Ok(()) };
+        let types = (0..7).map(CellTypeId).collect();
+        let faces = start.forest.top_level();
+        start.forest = Forest::new(faces, Content::QUAD);
+        let orbits = Orbits::new(&group, faces, &setting.catalogue, &types).expect("images");
+        let place = Place::top(dice.below(faces));
+        let genes = if dice.percent(50) { vec![patch(&start, &mut dice)] } else { Vec::new() };
+        let cell_weights = CellWeights::new([(place, 0.0)]);
+        let variation = Variation { genes, orbits: Some(orbits), cell_weights, ..Variation::default() };
+        let Some(mut evolution) = begin(&start, &mut dice, variation) else { return Ok(()) };
+        for (parent, forest) in replayed(&mut evolution, 2) {
+            for image in group.iter().map(|one| one.place(place)) {
+                let tree = |forest: &Forest| forest.find(image).map(|cell| Tree::of(forest, cell));
+                prop_assert!(tree(&parent) == tree(&forest) || start.setting.method == Method::Recursive);
+            }
+        }
     }
 
     /// Without other mutations a mutant is its parent with the gene in some places, whole cell by whole cell.

@@ -20,7 +20,9 @@ use springform_evolution::workspace::Workspace;
 use springform_mechanics::measures::Measures;
 use springform_mechanics::stage::STAGES;
 use springform_topology::address::Place;
+use springform_topology::cell_type::CellTypeId;
 use springform_topology::patch::Patch;
+use springform_topology::symmetry::Orbits;
 use std::time::Instant;
 
 /// (insertions, switches, toggles) as (is a share, number) each, and the weighting.
@@ -326,32 +328,40 @@ const COLUMN_NAMES: [&str; 11] = [
 pub struct StressSeeking {
     seeking: stress_seeking::StressSeeking,
     setting: Py<Setting>,
+    kind: CellTypeId,
+    orbits: Option<Orbits>,
     start: Standing,
 }
 
 #[pymethods]
 impl StressSeeking {
+    /// Children get type `kind`; with symmetries, which the forest has to have, whole orbits are subdivided.
     #[new]
-    fn new(py: Python<'_>, setting: Py<Setting>, forest: &Forest) -> PyResult<Self> {
+    #[pyo3(signature = (setting, forest, kind, *, symmetries=None))]
+    fn new(
+        py: Python<'_>,
+        setting: Py<Setting>,
+        forest: &Forest,
+        kind: &str,
+        symmetries: Option<&Symmetries>,
+    ) -> PyResult<Self> {
         let inner = &setting.get().setting;
+        let found = inner.catalogue.find(kind);
+        let kind = found.ok_or_else(|| refusal("type", format!("there is no cell type '{kind}'")))?;
+        let orbits = symmetries.map(|group| group.orbits(setting.get(), &[kind], forest)).transpose()?;
         let seeking = py
             .detach(|| stress_seeking::StressSeeking::new(inner, forest.forest.clone()))
             .map_err(|error| refusal("forest", error))?;
         let start = Standing::from(&seeking.phenotype().measures);
-        Ok(StressSeeking { seeking, setting, start })
+        Ok(StressSeeking { seeking, setting, kind, orbits, start })
     }
 
     /// Subdivides the cell of highest inner force; the edits, none if no cell is left to divide.
-    fn advance(&mut self, py: Python<'_>, kind: &str) -> PyResult<Vec<String>> {
+    fn advance(&mut self, py: Python<'_>) -> PyResult<Vec<String>> {
         let setting = self.setting.get();
-        let kind = setting
-            .setting
-            .catalogue
-            .find(kind)
-            .ok_or_else(|| refusal("type", format!("there is no cell type '{kind}'")))?;
-        let seeking = &mut self.seeking;
+        let (seeking, kind, orbits) = (&mut self.seeking, self.kind, self.orbits.as_ref());
         let edits = py
-            .detach(|| seeking.advance(&setting.setting, kind))
+            .detach(|| seeking.advance(&setting.setting, kind, orbits))
             .map_err(|error| refusal("forest", error))?;
         Ok(setting.lines(&edits))
     }

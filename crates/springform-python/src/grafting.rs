@@ -302,6 +302,21 @@ pub fn best_frame(setting: &Setting, patch: PatchTuple, vertex: u32) -> PyResult
     Ok(graft::best_frame(&setting.mesh, &patch, vertex, &mirrors).map(frame_tuple))
 }
 
+/// How badly a patch lies in some frames: cells that would be skipped, sides that are free and were not or the
+/// other way round.
+#[pyfunction]
+pub fn misfits(
+    setting: &Setting,
+    patch: PatchTuple,
+    frames: Vec<FrameTuple>,
+) -> PyResult<Vec<(usize, usize)>> {
+    let setting = &setting.setting;
+    let patch = patch_of(patch, &setting.catalogue)?;
+    let mirrors = Mirrors::new(&setting.catalogue);
+    let misfit = |tuple| Ok(graft::misfit(&setting.mesh, &patch, frame(&setting.mesh, tuple)?, &mirrors));
+    frames.into_iter().map(misfit).collect()
+}
+
 /// A patch as it is seen after quarter turns, mirrored or not.
 #[pyfunction]
 pub fn turned_patch(setting: &Setting, patch: PatchTuple, turn: u8, mirrored: bool) -> PyResult<PatchTuple> {

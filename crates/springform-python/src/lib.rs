@@ -37,6 +37,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(grafting::graft_patch, module)?)?;
     module.add_function(wrap_pyfunction!(grafting::check_patch, module)?)?;
     module.add_function(wrap_pyfunction!(grafting::best_frame, module)?)?;
+    module.add_function(wrap_pyfunction!(grafting::misfits, module)?)?;
     module.add_function(wrap_pyfunction!(grafting::turned_patch, module)?)?;
     module.add_function(wrap_pyfunction!(network::solve, module)?)?;
     module.add_function(wrap_pyfunction!(network::residuals, module)?)?;

@@ -157,24 +157,27 @@ pub fn best_frame(mesh: &BaseMesh, patch: &Patch, vertex: u32, mirrors: &Mirrors
     frames.into_iter().min_by_key(|frame| (frame.orientation.mirrored, *frame))
 }
 
-/// The frames at an anchor in which a patch fits best, ascending: fewest cells are skipped, then fewest sides are
-/// free where they were not or the other way round, so that inward is inward.
+/// The frames at an anchor in which a patch fits best, ascending: those of the least [`misfit`].
 pub fn fitting_frames(mesh: &BaseMesh, patch: &Patch, vertex: u32, mirrors: &Mirrors) -> Vec<Frame> {
-    let misfit = |frame: &Frame| {
-        let (mut skipped, mut unlike) = (0, 0);
-        for (cell, reached) in patch.cells.iter().zip(patch.locate(mesh, *frame)) {
-            match reached {
-                Ok(at) if can_lie(cell, at, mirrors) => {
-                    unlike += (0..4u8).filter(|&k| at.is_free(mesh, k) != cell.free[usize::from(k)]).count();
-                }
-                _ => skipped += 1,
-            }
-        }
-        (skipped, unlike)
-    };
-    let frames: Vec<_> = frames_at(mesh, vertex).into_iter().map(|frame| (misfit(&frame), frame)).collect();
+    let frames = frames_at(mesh, vertex).into_iter();
+    let frames: Vec<_> = frames.map(|frame| (misfit(mesh, patch, frame, mirrors), frame)).collect();
     let least = frames.iter().map(|&(misfit, _)| misfit).min();
     frames.into_iter().filter(|&(misfit, _)| Some(misfit) == least).map(|(_, frame)| frame).collect()
+}
+
+/// How badly a patch lies in a frame: cells that would be skipped, then sides that are free where they were not or
+/// the other way round, so that inward is inward.
+pub fn misfit(mesh: &BaseMesh, patch: &Patch, frame: Frame, mirrors: &Mirrors) -> (usize, usize) {
+    let (mut skipped, mut unlike) = (0, 0);
+    for (cell, reached) in patch.cells.iter().zip(patch.locate(mesh, frame)) {
+        match reached {
+            Ok(at) if can_lie(cell, at, mirrors) => {
+                unlike += (0..4u8).filter(|&k| at.is_free(mesh, k) != cell.free[usize::from(k)]).count();
+            }
+            _ => skipped += 1,
+        }
+    }
+    (skipped, unlike)
 }
 
 /// Every type of a patch's cell has a mirror image where the cell comes to lie mirrored.

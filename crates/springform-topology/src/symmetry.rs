@@ -325,6 +325,8 @@ impl Search<'_> {
 pub struct Orbits {
     /// For every face: the lowest face of its orbit, and how that one comes to lie on it.
     origins: Vec<Frame>,
+    /// For the lowest face of every orbit: the faces of the orbit, ascending; empty for others.
+    members: Vec<Vec<u32>>,
     /// For the lowest face of every orbit: the orientations in which it is carried to itself.
     stabilisers: Vec<Vec<Orientation>>,
     mirrors: Mirrors,
@@ -367,21 +369,55 @@ impl Orbits {
             stabilisers[face as usize].sort_unstable();
             stabilisers[face as usize].dedup();
         }
-        let origins = (0..).zip(origins).map(|(face, origin)| origin.unwrap_or(upright(face))).collect();
-        Ok(Orbits { origins, stabilisers, mirrors, catalogue: catalogue.clone() })
+        let origins: Vec<Frame> =
+            (0..).zip(origins).map(|(face, origin)| origin.unwrap_or(upright(face))).collect();
+        let mut members = vec![Vec::new(); faces as usize];
+        for (face, origin) in (0..).zip(&origins) {
+            members[origin.face as usize].push(face);
+        }
+        Ok(Orbits { origins, members, stabilisers, mirrors, catalogue: catalogue.clone() })
     }
 
     /// The cell stands for its orbit: it is the lowest of its images.
     pub fn represents(&self, place: Place) -> bool {
-        self.origins[place.face as usize].face == place.face
-            && self.stabilisers[place.face as usize]
-                .iter()
-                .all(|turned| place <= turned.place(place, place.face))
+        self.representative(place) == place
+    }
+
+    /// The cell that stands for another one's orbit.
+    pub fn representative(&self, place: Place) -> Place {
+        let back = self.on_origin(place);
+        self.images_on_origin(back).min().unwrap_or(back)
+    }
+
+    /// The cells of a cell's orbit, each once, ascending.
+    pub fn images(&self, place: Place) -> Vec<Place> {
+        let back = self.on_origin(place);
+        let mut images: Vec<Place> = self
+            .images_on_origin(back)
+            .flat_map(|image| {
+                let onto = move |&face: &u32| self.origins[face as usize].orientation.place(image, face);
+                self.members[back.face as usize].iter().map(onto)
+            })
+            .collect();
+        images.sort_unstable();
+        images.dedup();
+        images
+    }
+
+    /// An image of a cell in the lowest face of the orbit.
+    fn on_origin(&self, place: Place) -> Place {
+        let origin = self.origins[place.face as usize];
+        origin.orientation.inverse().place(place, origin.face)
+    }
+
+    /// All images in the lowest face of the orbit of a cell there.
+    fn images_on_origin(&self, place: Place) -> impl Iterator<Item = Place> + '_ {
+        self.stabilisers[place.face as usize].iter().map(move |turned| turned.place(place, place.face))
     }
 
     /// Number of orbits of top-level cells.
     pub fn count(&self) -> usize {
-        (0..).zip(&self.origins).filter(|&(face, origin)| origin.face == face).count()
+        self.members.iter().filter(|members| !members.is_empty()).count()
     }
 
     /// Makes a forest symmetric in the orbits of some top-level cells: the first of these in every orbit gives the
@@ -406,8 +442,9 @@ impl Orbits {
             let back = tree.oriented(origin.orientation.inverse(), &self.mirrors);
             let Ok(mut tree) = back else { continue };
             self.even_out(&mut tree, &self.stabilisers[origin.face as usize]);
-            for (face, from) in (0..).zip(&self.origins).filter(|(_, from)| from.face == origin.face) {
-                if let Ok(image) = tree.oriented(from.orientation, &self.mirrors) {
+            for &face in &self.members[origin.face as usize] {
+                let from = self.origins[face as usize].orientation;
+                if let Ok(image) = tree.oriented(from, &self.mirrors) {
                     image.write_over(forest, Place::top(face), edits)?;
                 }
             }

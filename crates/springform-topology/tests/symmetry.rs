@@ -112,6 +112,21 @@ proptest! {
         }
     }
 
+    /// The images of a cell are where the group carries it; the lowest stands for all.
+    #[test]
+    fn orbits_hold_all_images(design in grown_designs(25), mut dice in dice(8)) {
+        let Ok(group) = symmetries(&design.mesh, &design.anchors) else { return Ok(()) };
+        let faces = design.forest.top_level();
+        let Ok(orbits) = Orbits::new(&group, faces, &design.catalogue, &BTreeSet::new()) else { return Ok(()) };
+        let (top, first) = (Place::top(dice.below(faces)), dice.below(4) as u8);
+        for place in [top, top.child(first), top.child(first).child(dice.below(4) as u8)] {
+            let images: BTreeSet<Place> = group.iter().map(|one| one.place(place)).collect();
+            prop_assert_eq!(orbits.images(place), Vec::from_iter(images.iter().copied()));
+            prop_assert_eq!(Some(&orbits.representative(place)), images.first());
+            prop_assert_eq!(orbits.represents(place), images.first() == Some(&place));
+        }
+    }
+
     /// A forest that is made symmetric is so, stays so under edits of whole orbits and under closing, and gives as
     /// many springs round every image.
     #[test]

@@ -140,6 +140,9 @@ def seek_command(
     method: Method = None,
     until_differential: UntilDifferential = None,
     until_suf: UntilSuf = None,
+    symmetry: Annotated[
+        bool, typer.Option("--symmetry", help="Subdivide whole orbits of the framework.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Direct stress-seeking: subdivide the cell of highest inner force, solve, repeat."""
@@ -151,7 +154,7 @@ def seek_command(
         task = progress.add_task("seeking", total=steps, springs="–", differential="–")
         limits = {"until_differential": until_differential, "until_suf": until_suf}
         try:
-            for step in seek(start, steps=steps, type=type, **limits):
+            for step in seek(start, steps=steps, type=type, symmetry=symmetry, **limits):
                 update_bar(progress, task, step.step, step.springs, step.force_differential)
         except (SpringformError, KeyboardInterrupt) as error:
             if step is None:

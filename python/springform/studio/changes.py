@@ -42,12 +42,33 @@ class ValueChange(_Record):
 Change = ForestChange | ValueChange
 
 
+class Place(_Record):
+    """Where a net comes from: a parent or an individual of a run."""
+
+    run: str
+    """Folder of the run: within the document's folder, such as ``runs/0001``, or absolute."""
+    generation: int
+    """0 is the start."""
+    individual: int | None
+    """None: the parent for the next generation."""
+
+    @property
+    def label(self) -> str:
+        """In words, such as ``Generation 34, individual 2``."""
+        if self.generation == 0:
+            return "Start of the run"
+        rest = "its parent" if self.individual is None else f"individual {self.individual}"
+        return f"Generation {self.generation}, {rest}"
+
+
 class Action(_Record):
     """What one gesture did: one step of undo."""
 
     label: str
     """What was done, such as ``Subdivide 3 cells``."""
     changes: list[Change]
+    origin: Place | None = None
+    """Where the net was taken from, if it was taken over as a whole."""
 
 
 def apply(design: Design, action: Action) -> Design:
@@ -66,7 +87,7 @@ def inverse(design: Design, action: Action) -> Action:
         else:
             swapped = {"before": change.after, "after": change.before}
             changes.append(change.model_copy(update=swapped))
-    return Action(label=action.label, changes=changes)
+    return action.model_copy(update={"changes": changes})
 
 
 def values_of(design: Design) -> dict[str, Any]:

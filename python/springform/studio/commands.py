@@ -11,12 +11,12 @@ from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
 from ..evolution import seek
-from .changes import Action, ValueChange, values_of
+from .changes import Action, Place, ValueChange, values_of
 from .changes import forest_action as _forest
 from .changes import value_action as _value
 from .density import set_density
 from .editing_messages import DropSprings, SetDensity, SetSprings
-from .grafts import whole_orbit
+from .orbits import cell_orbit, spring_orbit, whole_orbit
 from .messages import (
     EditCells,
     EditSpring,
@@ -80,8 +80,10 @@ def edit_cells(design: Design, request: EditCells) -> tuple[Action, list[str]]:
 
 
 def edit_spring(design: Design, request: EditSpring) -> Action:
-    """Return the action that cuts or adds a spring."""
+    """Return the action that cuts or adds a spring, or all springs of its orbit."""
     first, second = request.nodes
+    if request.orbit:
+        return spring_orbit(design, first, second, request.what)
     _, added, cut = design.setting.notation(design.forest, "")
     pairs = {f"{first} {second}", f"{second} {first}"}
     if request.what == "cut":
@@ -96,14 +98,16 @@ def seek_stress(design: Design, request: SeekStress) -> tuple[Action, list[str]]
     """Return the action that subdivides where the force is, and the last cells that it made."""
     edits: list[str] = []
     steps = 0
-    for step in seek(design, steps=request.steps, type=request.kind):
+    for step in seek(design, steps=request.steps, type=request.kind, symmetry=request.orbit):
         edits += step.edits
         steps, last = step.step, step.edits
     if not steps:
         raise InputError("no cell of this design can be subdivided further")
     label = f"Seek stress, {steps} step{'s' if steps > 1 else ''}"
-    divided = [edit.split(" ")[0] for edit in last if edit.split(" ")[1] == "subdivide"]
-    return _forest(label, edits), _children(divided[:1])
+    divided = [edit.split(" ")[0] for edit in last if edit.split(" ")[1] == "subdivide"][:1]
+    if request.orbit:
+        return _forest(f"{label}, symmetrically", edits), _children(cell_orbit(design, divided))
+    return _forest(label, edits), _children(divided)
 
 
 def set_value(design: Design, request: SetValue) -> Action:
@@ -136,10 +140,10 @@ def set_framework(design: Design, request: SetFramework) -> Action:
     return Action(label=label, changes=[whole])
 
 
-def whole(design: Design, other: Design, label: str) -> Action:
-    """Return the action that puts another design in place of a design."""
+def whole(design: Design, other: Design, label: str, origin: Place | None = None) -> Action:
+    """Return the action that puts another design in place of a design; it may come from a run."""
     change = ValueChange(path=[], before=values_of(design), after=values_of(other.closed))
-    return Action(label=label, changes=[change])
+    return Action(label=label, changes=[change], origin=origin)
 
 
 # --- cells ----------------------------------------------------------------------------------------

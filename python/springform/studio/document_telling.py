@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ..design import Design
 from .changes import values_of
+from .figure_messages import Figures
 from .journal import Journal
-from .messages import AnchorState, DocumentState, Figures, HistoryLine
+from .messages import AnchorState, DocumentState, HistoryLine
 from .run_messages import Looked
 from .spring_groups import group_lines
 from .telling import cell_types_of
@@ -40,7 +41,7 @@ def document_state(
         position=document.position,
         length=len(document.actions),
         history=[
-            HistoryLine(label=action.label, number=number)
+            HistoryLine(label=action.label, number=number, origin=action.origin)
             for number, action in enumerate(actions, start=first + 1)
         ],
         figures=figures,

@@ -34,12 +34,13 @@ _KEPT_ALGORITHMS = 4
 _POLL = 0.25
 """Seconds between looks at requests, and at a run that another process drives [s]."""
 
-_ENDINGS = {
+ENDINGS = {
     "generations": "the number of generations is reached",
     "springs": "the number of springs is reached",
     "differential": "the force differential is reached",
     "suf": "the spring utilization factor is reached",
 }
+"""Why a run ended, by the name of the condition."""
 
 
 class Evolving:
@@ -168,6 +169,23 @@ class Evolving:
                 raise InputError(f"there are generations 0 to {len(self._parents) - 1}")
             return self._parents[generation]
 
+    def standing(self, generation: int) -> tuple[int, int | None]:
+        """Return generation and number of the individual that was the parent after a generation.
+
+        (0, None): it was the start still.
+        """
+        with self._changed:
+            for row in reversed(self.rows[:generation]):
+                if row.winner is not None:
+                    return row.generation, row.winner
+        return 0, None
+
+    def suf(self, generation: int, individual: int) -> float | None:
+        """Return the spring utilization factor of an individual; None if it is undefined."""
+        with self._changed:
+            value = float(self._columns[generation - 1]["suf"][individual])
+        return value if np.isfinite(value) else None
+
     def individual(self, generation: int, individual: int) -> Design:
         """Rebuild an individual. Raises `InputError`: there is no such."""
         if not 1 <= generation <= len(self.rows):
@@ -282,7 +300,7 @@ class Evolving:
             self._tell()
         else:
             writer.checkpoint()
-            self.status, self.reason = "ended", _ENDINGS[reason]
+            self.status, self.reason = "ended", ENDINGS[reason]
         save(self.parent(len(self.rows)), self.folder / "best.toml")
 
     def _obey(self, requests: Requests, writer: RunWriter) -> None:
@@ -340,7 +358,7 @@ class Evolving:
         """Return how a run stands that its driver has left."""
         evolution = self._algorithm(len(self.rows), threads=1)
         reason = evolution.reached(*self.parameters.ending())
-        return ("paused", "") if reason is None else ("ended", _ENDINGS[reason])
+        return ("paused", "") if reason is None else ("ended", ENDINGS[reason])
 
     def _keep(self, evolution: _core.Evolution, writer: RunWriter) -> None:
         result = evolution.advance()

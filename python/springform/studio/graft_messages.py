@@ -78,7 +78,7 @@ class _Placing(Message):
     anchor: Key | None
     """Anchor that it is set on; None of both: every anchor."""
     rotate: Annotated[int, Field(ge=-1000, le=1000)]
-    """Steps: quarter turns, or round an anchor from cell to cell."""
+    """Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole."""
     mirror: bool
     orbit: bool
     """Whether it is set on all images under the framework's symmetries."""
@@ -181,5 +181,7 @@ class GraftPlan(Message):
     """Borders of the cells that are written, a segment six numbers [m]."""
     springs: list[float]
     """Springs of these cells [m]."""
+    turns: int
+    """Steps of rotation after which it lies as at first; 1: it lies whole in one way only."""
     before: GraftFigures | None
     after: GraftFigures | None

@@ -1,7 +1,8 @@
-"""Grafting in the studio: selections, patches that are lifted, planned and set, whole orbits."""
+"""Grafting in the studio: selections, patches that are lifted, planned and set."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -13,9 +14,8 @@ from .. import _core
 from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
-from ..grafting import Frame, Grafted, edit_orbit, graft, lift, symmetries
+from ..grafting import Frame, Grafted, graft, lift
 from ..patch_file import Origin, Patch
-from ..patch_schema import CorePatch
 from ..selections import select, vertex_of
 from .changes import Action, ForestChange, ValueChange, values_of
 from .graft_messages import (
@@ -26,9 +26,9 @@ from .graft_messages import (
     PlacedPatch,
     PlanGraft,
     SelectCells,
-    SymmetryState,
 )
 from .motion import carried
+from .orbits import cell_orbit
 
 
 def selected(design: Design, request: SelectCells) -> list[str]:
@@ -40,8 +40,7 @@ def selected(design: Design, request: SelectCells) -> list[str]:
     else:
         raise InputError("select cells first")
     if request.orbit:
-        images = symmetries(design).edits(design.setting, [f"{c} on" for c in chosen.addresses])
-        chosen = _core.Selection(design.mesh, [line.split(" ")[0] for line in images])
+        chosen = _core.Selection(design.mesh, cell_orbit(design, chosen.addresses))
     if request.grow:
         level = min(address.count(".") for address in request.cells or chosen.addresses)
         change = chosen.grown if request.grow > 0 else chosen.shrunk
@@ -89,6 +88,7 @@ def planned(
         skipped=[f"{one.where}: {one.why}" for one in grafted.skipped],
         outline=outline,
         springs=springs,
+        turns=_turns(design, patch, request),
         before=graft_figures(design) if before else None,
         after=graft_figures(grafted.design) if before else None,
     )
@@ -114,51 +114,6 @@ def graft_action(design: Design, patch: Patch, request: Graft) -> tuple[Action, 
     faces = sorted({face for one in grafted.placed for face in one.cells})
     region = _core.Selection(design.mesh, [str(face) for face in faces])
     return action, region.expressed(grafted.design.forest)
-
-
-def whole_orbit(design: Design, action: Action, cells: list[str]) -> tuple[Action, list[str]]:
-    """Return an action on cells done to all their images too, and the images of `cells`.
-
-    Raises `InputError`: the images can't be edited alike.
-    """
-    changes = [
-        change.model_copy(update={"edits": _images(design, change.edits)})
-        if isinstance(change, ForestChange)
-        else change
-        for change in action.changes
-    ]
-    group = symmetries(design)
-    images = group.edits(design.setting, [f"{cell} on" for cell in cells]) if cells else []
-    label = f"{action.label}, symmetrically"
-    return Action(label=label, changes=changes), [line.split(" ")[0] for line in images]
-
-
-def _images(design: Design, edits: list[str]) -> list[str]:
-    """Return edits with their images; cells that have the same type by another turn are taken."""
-    found = []
-    for line in edit_orbit(design, edits):
-        words = line.split(" ")
-        if words[1] == "retype":
-            content = design.setting.cell(design.forest, words[0])[0]
-            if content.partition("@")[0] == words[2].partition("@")[0]:
-                words[2] = content
-        found.append(" ".join(words))
-    return found
-
-
-def symmetry_state(design: Design) -> SymmetryState:
-    """Return which symmetries a framework has, and whether the net has them too."""
-    try:
-        group = symmetries(design)
-    except InputError as error:
-        return SymmetryState(rotations=1, mirrors=0, broken="", problem=error.message)
-    mirrors = sum(group.mirrored)
-    broken = ""
-    try:
-        group.check(design.setting, design.closed.forest)
-    except _core.CoreError as error:
-        broken = error.args[1]
-    return SymmetryState(rotations=len(group) - mirrors, mirrors=mirrors, broken=broken, problem="")
 
 
 def graft_figures(design: Design) -> GraftFigures:
@@ -203,11 +158,21 @@ def _grafted(design: Design, patch: Patch, request: PlanGraft | Graft) -> Grafte
     return replace(grafted, placed=placed)
 
 
+def _turns(design: Design, patch: Patch, request: PlanGraft) -> int:
+    """Return the steps of rotation after which the patch lies as at first."""
+    if request.cell is not None:
+        return 4
+    names = design.anchor_names if request.anchor is None else (request.anchor,)
+    rows = [len(frames_around(design, patch, name, mirror=request.mirror)) for name in names]
+    return math.lcm(*rows)
+
+
 def frames_around(design: Design, patch: Patch, anchor: str, *, mirror: bool) -> list[Frame]:
     """Return the frames with the patch's first corner on an anchor, from the one that fits best.
 
-    They follow each other round the anchor, a cell a step; with `mirror` they are those of the
-    other hand. Raises `InputError`: there is no such anchor.
+    They follow each other round the anchor, a cell a step, without those in which more of the patch
+    would fall off the net; with `mirror` they are those of the other hand.
+    Raises `InputError`: there is no such anchor.
     """
     vertex, core = vertex_of(design, anchor), patch.core()
     best = _core.best_frame(design.setting, core, vertex)
@@ -215,16 +180,11 @@ def frames_around(design: Design, patch: Patch, anchor: str, *, mirror: bool) ->
         raise DesignError("touches no cell", key=anchor)
     ring = _faces_round(design.mesh.faces.tolist(), vertex)
     frames = [(face, corner, best[2] is not mirror) for face, corner in ring]
-    if not mirror:
-        start = next(at for at, frame in enumerate(frames) if frame[0] == best[0])
-    else:
-        start = max(range(len(frames)), key=lambda at: _covered(design, core, frames[at]))
-    return frames[start:] + frames[:start]
-
-
-def _covered(design: Design, core: CorePatch, frame: Frame) -> int:
-    _, _, results = _core.graft_patch(design.setting, design.forest, core, [frame])
-    return len(results[0][0])
+    misfits = dict(zip(frames, _core.misfits(design.setting, core, frames), strict=True))
+    start = frames.index(min(frames, key=lambda frame: (misfits[frame], frame)))
+    least = min(skipped for skipped, _ in misfits.values())
+    turned = frames[start:] + frames[:start]
+    return [frame for frame in turned if misfits[frame][0] == least]
 
 
 def _faces_round(faces: Sequence[Sequence[int]], vertex: int) -> list[tuple[int, int]]:
@@ -278,6 +238,4 @@ __all__ = [
     "lifted",
     "planned",
     "selected",
-    "symmetry_state",
-    "whole_orbit",
 ]

@@ -7,16 +7,20 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from .. import _core
 from ..design import Design
 from ..errors import InputError, SpringformError
+from ..files import WriteError
 from ..network import Equilibrium
 from ..parameters import Parameters, checked_parameters
 from ..run import start_evolution
+from .evolving import ENDINGS
 from .frames import Tables, tables_of
+from .live_file import Point, Standing, design_data
 
 Status = Literal["running", "paused", "failed"]
 
@@ -41,6 +45,12 @@ _COUNTED = 20
 _REMEMBERED = 400
 """Generations of which windows are told."""
 
+_CHECKPOINT = 1.0
+"""Longest time that a running evolution is not on the disk [s]; what it makes meanwhile it would
+make again."""
+
+_GOALS = frozenset({"until_springs", "until_differential", "until_suf"})
+
 
 @dataclass(frozen=True)
 class Grown:
@@ -51,40 +61,46 @@ class Grown:
     equilibrium: Equilibrium
 
 
-@dataclass(frozen=True)
-class Point:
-    """What a generation gave."""
-
-    generation: int
-    springs: int
-    force_differential: float | None
-
-
 class Live:
     """Evolves a design in a thread of its own, generation by generation; safe to call from any.
 
-    Attributes: `status`, `reason` (why it failed), `parameters`, `points` (of the last
-    generations), `start` (the design that it began with).
+    Attributes: `status`, `reason` (why it failed or stands still), `parameters`, `points` (of the
+    last generations).
     """
 
-    def __init__(self, design: Design, parameters: Mapping[str, Any], tell: Callable[[], None]):
-        """Begin at once; `tell` is called in the thread after every generation.
+    def __init__(
+        self,
+        design: Design,
+        parameters: Mapping[str, Any],
+        tell: Callable[[], None],
+        keep: Callable[[Standing], None],
+        standing: Standing | None = None,
+    ):
+        """Begin at once, or take up where it stood and wait for `go_on`.
 
+        In the thread `tell` is called after every generation, and `keep` whenever the evolution is
+        to be put on the disk.
         Raises `InputError`: a parameter that is not allowed, or a design that gives no net.
         """
-        self.start = design.closed
+        design = design.closed
+        self._method = design.file.method
         self.parameters = self._checked(DEFAULTS | dict(parameters))
-        self.status: Status = "running"
-        self.reason = ""
-        self.points: deque[Point] = deque(maxlen=_REMEMBERED)
+        self.status: Status = "running" if standing is None else "paused"
+        self.reason = "" if standing is None else "taken up as it stood when the studio ended"
+        self.points: deque[Point] = deque(standing.points if standing else (), maxlen=_REMEMBERED)
         self._tell = tell
+        self._keep = keep
         self._changed = threading.Condition()
         self._moved: dict[str, tuple[float, float, float]] = {}
         self._wanted: dict[str, Any] = {}
         self._closed = False
         self._times: deque[float] = deque(maxlen=_COUNTED + 1)
-        self._evolution = self._begun(self.start, None)
-        self._grown = _grown(self.start)
+        resumed = None if standing is None else (standing.generation, standing.start, None)
+        self._evolution = self._begun(design, resumed)
+        self._reached = standing is not None and self._goal() is not None
+        self._grown = _grown(design)
+        self._kept_at = float("-inf")
+        self._unkept = standing is None
         self._thread = threading.Thread(target=self._work, name="live evolution", daemon=True)
         self._thread.start()
 
@@ -102,13 +118,20 @@ class Live:
         return (len(times) - 1) / max(times[-1] - times[0], 1e-9)
 
     @property
+    def wanted(self) -> Parameters:
+        """The parameters from the next generation on."""
+        with self._changed:
+            values = self.parameters.model_dump() | self._wanted
+        return self._checked(values)
+
+    @property
     def grown(self) -> Grown:
         """The parent now."""
         return self._grown
 
     def move_anchor(self, anchor: str, position: tuple[float, float, float]) -> None:
         """Hold an anchor elsewhere from the next generation on. Raises `InputError`: no such."""
-        if anchor not in self.start.anchor_names:
+        if anchor not in self._grown.design.anchor_names:
             raise InputError("there is no anchor of this name", key=anchor)
         with self._changed:
             self._moved[anchor] = position
@@ -116,8 +139,10 @@ class Live:
 
     def change(self, parameters: Mapping[str, Any]) -> None:
         """Change parameters from the next generation on. Raises `InputError`: not allowed."""
+        values = self.wanted.model_dump() | dict(parameters)
+        # The algorithm itself says what it would refuse.
+        start_evolution(self._grown.design, self._checked(values), threads=1)
         with self._changed:
-            self._checked(self.parameters.model_dump() | self._wanted | dict(parameters))
             self._wanted |= parameters
             self._changed.notify()
 
@@ -127,21 +152,24 @@ class Live:
             if self.status == "running":
                 self.status = "paused"
                 self._times.clear()
+                self._changed.notify()
         self._tell()
 
     def go_on(self) -> None:
         """Go on after `pause`."""
         with self._changed:
             if self.status == "paused":
-                self.status = "running"
+                self.status, self.reason = "running", ""
             self._changed.notify()
 
     def close(self) -> Design:
-        """End the thread and return what is shown."""
+        """End the thread, keep where it stands, and return what is shown."""
         with self._changed:
             self._closed = True
             self._changed.notify()
         self._thread.join()
+        with suppress(WriteError):  # where it stood before is there
+            self._checkpoint()
         return self._grown.design
 
     # --- in the thread -------------------------------------------------------------------------
@@ -162,27 +190,65 @@ class Live:
                 return False
             moved, self._moved = self._moved, {}
             wanted, self._wanted = self._wanted, {}
+            if wanted:
+                self.parameters = self._checked(self.parameters.model_dump() | wanted)
             running = self.status == "running"
         began = time.monotonic()
+        if not (running or moved or wanted):
+            self._checkpoint()
+            return True
         design = self._grown.design
-        if wanted:
-            self.parameters = self._checked(self.parameters.model_dump() | wanted)
+        if _GOALS & set(wanted):
+            self._reached = False
         if moved:
             design = with_anchors(design, moved)
         if moved or wanted:
-            self._evolution = self._begun(design, self._evolution)
+            before = self._evolution
+            self._evolution = self._begun(design, (before.generation, before.start, None))
         if running:
             result = self._evolution.advance()
             design = design.edited(result["edits"])
-        self._grown = _grown(design)
+        self._grown, self._unkept = _grown(design), True
         if running:
             self._note(self._evolution)
+            self._pause_at_goal()
+        if moved or wanted or began > self._kept_at + _CHECKPOINT:
+            self._checkpoint()
+        if running:
             self._rest(began + _SHORTEST)
         return True
 
     def _has_work(self) -> bool:
-        waiting = bool(self._moved or self._wanted)
-        return self._closed or (self.status != "failed" and (self.status == "running" or waiting))
+        if self._closed or self.status == "failed":
+            return self._closed
+        return bool(self.status == "running" or self._moved or self._wanted or self._unkept)
+
+    def _pause_at_goal(self) -> None:
+        """Stand still at the generation that reaches a goal; whoever goes on goes beyond it."""
+        goal, reached = self._goal(), self._reached
+        self._reached = goal is not None
+        with self._changed:
+            if goal is not None and not reached and self.status == "running":
+                self.status, self.reason = "paused", ENDINGS[goal]
+                self._times.clear()
+
+    def _goal(self) -> str | None:
+        _, springs, differential, suf = self.parameters.ending()
+        return self._evolution.reached(None, springs, differential, suf)
+
+    def _checkpoint(self) -> None:
+        """Put the evolution on the disk, if it is not there. Raises `WriteError`."""
+        if not self._unkept:
+            return
+        evolution = self._evolution
+        standing = Standing(
+            generation=evolution.generation,
+            start=evolution.start,
+            points=list(self.points),
+            design=design_data(self._grown.design),
+        )
+        self._keep(standing)
+        self._unkept, self._kept_at = False, time.monotonic()
 
     def _rest(self, until: float) -> None:
         with self._changed:
@@ -190,19 +256,22 @@ class Live:
 
     def _note(self, evolution: _core.Evolution) -> None:
         standing = evolution.measures
-        point = Point(evolution.generation, standing["springs"], standing["force_differential"])
+        point = Point(
+            generation=evolution.generation,
+            springs=standing["springs"],
+            force_differential=standing["force_differential"],
+        )
         self.points.append(point)
         self._times.append(time.monotonic())
 
-    def _begun(self, design: Design, before: _core.Evolution | None) -> _core.Evolution:
+    def _begun(self, design: Design, resumed: Any) -> _core.Evolution:
         """Return the algorithm at a design, counting on from where it was."""
         # One thread is left to the windows.
         threads = max(1, (os.cpu_count() or 2) - 1)
-        resumed = None if before is None else (before.generation, before.start, None)
         return start_evolution(design, self.parameters, threads=threads, resumed=resumed)
 
     def _checked(self, values: Mapping[str, Any]) -> Parameters:
-        return checked_parameters(values, self.start.file.method)
+        return checked_parameters(values, self._method)
 
 
 def with_anchors(design: Design, moved: Mapping[str, tuple[float, float, float]]) -> Design:

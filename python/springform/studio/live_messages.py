@@ -14,8 +14,10 @@ class LiveEvolve(Message):
 
     type: Literal["live_evolve"] = "live_evolve"
     id: int
-    what: Literal["start", "pause", "continue", "change", "keep", "discard"]
+    what: Literal["start", "pause", "continue", "change", "defaults", "keep", "discard"]
+    """`change` and `defaults` are for parameters, whether something evolves or not."""
     parameters: dict[str, Any] = Field(default_factory=dict)
+    """Of `start` and `change`; others stay as they are."""
 
 
 class WeighCells(Message):
@@ -43,11 +45,14 @@ class LiveState(Message):
     type: Literal["live"] = "live"
     status: Literal["none", "running", "paused", "failed"] = "none"
     reason: str = ""
+    """Why it failed or stands still; empty: because it was told to."""
     generation: int = 0
     rate: float = 0.0
     """Generations a second."""
     points: list[LivePoint] = Field(default_factory=list)
     """Of the last generations."""
     parameters: dict[str, Any] = Field(default_factory=dict)
+    changed: list[str] = Field(default_factory=list)
+    """Names of the parameters that a person changed."""
     weights: dict[str, float] = Field(default_factory=dict)
     """Factors by address of cells."""

@@ -14,7 +14,9 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
+from .changes import Place
 from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .figure_messages import Figures
 from .frame_messages import Frame
 from .graft_messages import (
     AskSymmetry,
@@ -32,6 +34,7 @@ from .graft_messages import (
 from .live_messages import LiveEvolve, LiveState, WeighCells
 from .message_base import Address, Key, Vector
 from .message_base import Message as _Message
+from .pin_messages import Compared, Comparing, Pin, Pins, Unpin
 from .run_messages import (
     Brushes,
     Clusters,
@@ -68,6 +71,8 @@ class EditSpring(_Message):
     id: int
     what: Literal["cut", "add"]
     nodes: Annotated[list[Key], Field(min_length=2, max_length=2)]
+    orbit: bool = False
+    """Whether the images under the framework's symmetries are cut or added too."""
 
 
 class MoveAnchor(_Message):
@@ -101,6 +106,8 @@ class SeekStress(_Message):
     id: int
     steps: Annotated[int, Field(ge=1, le=1000)]
     kind: Annotated[str, Field(max_length=100)]
+    orbit: bool = False
+    """Whether a step subdivides all images of the cell under the framework's symmetries."""
 
 
 class SetValue(_Message):
@@ -207,6 +214,8 @@ Request = Annotated[
     | Look
     | Follow
     | Reinstate
+    | Pin
+    | Unpin
     | LiveEvolve
     | WeighCells
     | SelectCells
@@ -228,29 +237,14 @@ REQUEST: TypeAdapter[Request] = TypeAdapter(Request)
 # --- events: from the engine to windows -----------------------------------------------------------
 
 
-class Figures(_Message):
-    """Measures of the net at equilibrium."""
-
-    springs: int
-    nodes: int
-    cells: int
-    force_differential: float | None
-    force_min: float
-    force_max: float
-    force_mean: float
-    total_length: float
-    area: float
-    shortest_spring: float
-    converged: bool
-    reason: str
-
-
 class HistoryLine(_Message):
     """One action of the history."""
 
     label: str
     number: int
     """Actions done once this one is, from 1."""
+    origin: Place | None
+    """Where the net was taken from, if it was taken over as a whole."""
 
 
 class AnchorState(_Message):
@@ -341,6 +335,8 @@ class Reply(_Message):
     id: int
     problem: str | None = None
     """What is wrong and what to do; None: it was done."""
+    key: str | None = None
+    """What the problem is about, such as a parameter, where that is known."""
     cells: list[Address] = Field(default=[])
     """Cells that the action made or changed."""
     preview: PreviewState | None = None
@@ -357,7 +353,7 @@ class Problem(_Message):
 
 
 Event = Annotated[
-    DocumentState | RunState | LiveState | Patches | Welcome | Reply | Problem,
+    DocumentState | RunState | Pins | LiveState | Patches | Welcome | Reply | Problem,
     Field(discriminator="type"),
 ]
 
@@ -421,6 +417,8 @@ class Protocol(_Message):
     lineage: Lineage
     brushes: Brushes
     clusters: Clusters
+    comparing: Comparing
+    compared: Compared
 
 
 class _PlainSchema(GenerateJsonSchema):

@@ -37,6 +37,8 @@ class Look(Message):
     """None: the design."""
     individual: Annotated[int, Field(ge=0)] | None
     """None: the parent that the generation chose."""
+    pin: int | None = None
+    """What is pinned, instead of a generation."""
 
 
 class Follow(Message):
@@ -55,10 +57,15 @@ class Reinstate(Message):
 
 
 class Looked(Message):
-    """A parent or an individual that is shown instead of the design."""
+    """A parent, an individual or something pinned that is shown instead of the design."""
 
-    generation: int
+    label: str
+    """Such as ``Generation 34, individual 2``."""
+    generation: int | None
+    """In the document's run; None: it is pinned, and of no run or of an earlier one."""
     individual: int | None
+    pin: int | None
+    """Of what is in no generation of the run."""
 
 
 class GenerationRow(Message):
@@ -87,6 +94,8 @@ class RunState(Message):
     status: Literal["none", "running", "paused", "ended", "failed"]
     reason: str
     folder: str
+    name: str
+    """The folder as pins and the history name it."""
     driver: str
     """Another process that drives it; empty: this studio does, or nobody."""
     following: bool

@@ -11,12 +11,12 @@ import numpy as np
 
 from ..design import Design
 from ..errors import InputError
+from .changes import Place
 from .choosing import brushed, clusters
 from .evolving import Evolving
 from .frame_messages import TableHeader
 from .frames import encode
 from .run_messages import Brushes, Cluster, Clusters, Lineage, RunState, SteerRun
-from .telling import picture_of
 from .window import Window
 
 _PERIOD = 0.1
@@ -51,6 +51,20 @@ class RunStage:
     def generations(self) -> int:
         """Generations that the run made; 0: there is none."""
         return 0 if self.run is None else len(self.run.rows)
+
+    @property
+    def name(self) -> str:
+        """The run's folder as pins and the history name it; empty: there is none."""
+        if self.run is None:
+            return ""
+        own = self.run.folder.parent == self._folder
+        return f"{self._folder.name}/{self.run.folder.name}" if own else str(self.run.folder)
+
+    def suf(self, place: Place) -> float | None:
+        """Return the spring utilization factor of an individual; None for one of another run."""
+        if self.run is None or place.run != self.name or place.individual is None:
+            return None
+        return self.run.suf(place.generation, place.individual)
 
     def known(self) -> Evolving:
         """Return the run. Raises `InputError`: there is none."""
@@ -124,10 +138,6 @@ class RunStage:
             ],
         )
 
-    def picture(self, generation: int, individual: int) -> bytes:
-        """Return the net of an individual at equilibrium, as a frame of its net and its motion."""
-        return picture_of(self.known().individual(generation, individual))
-
     def tell(self, window: Window) -> None:
         """Tell a window what it does not know of the run."""
         run = self.run
@@ -143,6 +153,7 @@ class RunStage:
                 status="none" if run is None else run.status,
                 reason="" if run is None else run.reason,
                 folder="" if run is None else str(run.folder),
+                name=self.name,
                 driver="" if run is None or run.driver is None else str(run.driver),
                 following=self.following,
                 parameters={} if run is None else run.parameters.model_dump(mode="json"),

@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 import uvicorn
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from starlette.applications import Starlette
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection, Request
@@ -29,6 +29,7 @@ from .address import Address, keep_address, last_address
 from .exports import export
 from .library import Library
 from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
+from .pin_messages import Comparing, Side
 from .run_messages import Brushes
 from .session import Session
 from .telling import picture_of
@@ -41,6 +42,8 @@ STATIC = Path(__file__).parent / "static"
 
 _LARGEST_MESSAGE = 4 * 2**20
 """Bytes of a request [B]; beyond it the window is cut off."""
+
+_SIDE: TypeAdapter[Side] = TypeAdapter(Side)
 
 _POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -107,10 +110,8 @@ def application(library: Library, token: str, port: int) -> Starlette:
             Route("/api/documents/{document}", _answering(_document)),
             Route("/api/documents/{document}/run", _answering(_table)),
             Route("/api/documents/{document}/export/{name}", _answering(_export)),
-            Route(
-                "/api/documents/{document}/run/{generation:int}/{individual:int}",
-                _answering(_individual),
-            ),
+            Route("/api/documents/{document}/net/{side:path}", _answering(_net)),
+            Route("/api/documents/{document}/compare", _answering(_compare), methods=["POST"]),
             Route(
                 "/api/documents/{document}/run/clusters", _answering(_clusters), methods=["POST"]
             ),
@@ -342,12 +343,26 @@ async def _lineage(request: Request) -> BaseModel:
     return await asyncio.to_thread(session.runs.lineage, *place)
 
 
-async def _individual(request: Request) -> Response:
+async def _net(request: Request) -> Response:
     studio: Studio = request.app.state.studio
     session = await studio.session(request.path_params["document"])
-    place = request.path_params["generation"], request.path_params["individual"]
-    picture = await asyncio.to_thread(session.runs.picture, *place)
+    try:
+        side = _SIDE.validate_python(request.path_params["side"])
+    except ValidationError:
+        raise InputError("must be a net, such as design, pin/4 or run/34/2", key="net") from None
+    picture = await asyncio.to_thread(session.pins.picture, side)
     return Response(picture, media_type="application/octet-stream")
+
+
+async def _compare(request: Request) -> BaseModel:
+    studio: Studio = request.app.state.studio
+    session = await studio.session(request.path_params["document"])
+    try:
+        asked = Comparing.model_validate_json(await request.body())
+    except ValidationError:
+        problem = "must be two nets, such as design, pin/4 or run/34/2"
+        raise InputError(problem, key="body") from None
+    return await asyncio.to_thread(session.pins.compared, asked)
 
 
 async def _scene_picture(request: Request) -> Response:

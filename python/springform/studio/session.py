@@ -18,10 +18,11 @@ from ..design import Design, load, save
 from ..design_schema import DesignFile
 from ..errors import InputError, SpringformError
 from ..patch_file import Origin
-from . import commands, grafts, journal
+from . import commands, grafts, journal, orbits
 from .changes import Action
 from .document import Document
 from .document_telling import document_state
+from .figure_messages import Figures
 from .frames import Tables, net_frame, tables_of
 from .graft_messages import (
     AskSymmetry,
@@ -41,7 +42,6 @@ from .messages import (
     REQUEST,
     Answer,
     DocumentState,
-    Figures,
     Hold,
     Move,
     MoveAnchor,
@@ -60,12 +60,13 @@ from .messages import (
 )
 from .motion import Motion, State
 from .patches import PatchFolder
+from .pin_messages import Pin, Unpin
+from .pin_stage import Looking, PinStage
 from .preview import preview_of
 from .run_messages import (
     Evolve,
     Follow,
     Look,
-    Looked,
     Reinstate,
     SteerRun,
 )
@@ -95,17 +96,22 @@ class Session:
         self._windows: set[Window] = set()
         self._patches = PatchFolder(folder.parent / "patches")
         self._figures: dict[int, Figures] = {}
-        self._looking: tuple[Looked, Design, Figures] | None = None
+        self._looking: Looking | None = None
         settings = self._journal.settings
         self.runs = RunStage(self._journal.folder / "runs", settings.run, self._run_now)
-        self._live = LiveStage(self._tell_all, self._show_grown)
+        self.pins = PinStage(self._journal.folder, self._journal.document, self.runs)
         self._revision = 0
         self._nets: dict[int, tuple[Design, Tables]] = {}
         self._state: State | None = None
         self._state_frame: bytes = b""
         self._saved = self._read_file()
+        self._live = LiveStage(
+            self._journal.folder, lambda: self.design, self._tell_all, self._show_grown
+        )
         self._motion = Motion(lambda state: self._call(self._moved, state))
         self._take_design()
+        if self._live.live is not None:
+            self._show_grown(self._live.live.grown)
 
     @property
     def design(self) -> Design:
@@ -115,7 +121,7 @@ class Session:
     @property
     def shown(self) -> Design:
         """The design, or the individual that is shown instead."""
-        return self.design if self._looking is None else self._looking[1]
+        return self.design if self._looking is None else self._looking.net.design
 
     async def close(self) -> None:
         """End the motion, write a snapshot and let the folder go."""
@@ -137,7 +143,10 @@ class Session:
             self._windows.add(window)
             window.tell(self._document_state())
             self.runs.tell(window)
+            window.tell(self.pins.state())
             window.tell(self._live.state())
+            if self.pins.folder.problem is not None:
+                window.tell(Problem(message=str(self.pins.folder.problem)))
         return window
 
     def leave(self, window: Window) -> None:
@@ -184,10 +193,11 @@ class Session:
                 return
             cells, answer = await self._do(window, request)
         except SpringformError as error:
-            self._answer(window, request, problem=str(error))
+            key = error.key if isinstance(error, InputError) else None
+            self._answer(window, request, problem=str(error), key=key)
         except _core.CoreError as error:
             key, problem = error.args
-            self._answer(window, request, problem=f"{key}: {problem}")
+            self._answer(window, request, problem=f"{key}: {problem}", key=key)
         else:
             self._answer(window, request, cells=cells, answer=answer)
 
@@ -246,9 +256,13 @@ class Session:
             case MoveAnchor() if self._live.live is not None:
                 self._live.move_anchor(request.anchor, request.position)
                 return []
+            case Pin() | Unpin():
+                await self._in_thread(lambda: self._pin(request))
+                self._tell_all(self.pins.state())
+                return []
             case Look():
                 self.runs.following = False
-                await self._look(request.generation, request.individual)
+                await self._look(request)
                 self._tell_runs()
             case Follow():
                 await self._follow(request.on)
@@ -364,11 +378,16 @@ class Session:
         if request.what == "start":
             self._check_design_is_shown()
             self.runs.following = False
-        kept = await self._live.steer(request, self.design)
+        kept = await self._live.steer(request)
         if kept is not None:
             design, generation = kept
             label = f"Evolve live, {generation} generation{'' if generation == 1 else 's'}"
-            await self.act(lambda: (commands.whole(self.design, design, label), []))
+            try:
+                await self.act(lambda: (commands.whole(self.design, design, label), []))
+            except SpringformError:
+                self._live.take_up()
+                raise
+            self._live.forget()
         elif request.what == "discard":
             self._take_design()
 
@@ -397,7 +416,7 @@ class Session:
         if isinstance(request, SelectCells):
             return grafts.selected(self.shown, request), None
         if isinstance(request, AskSymmetry):
-            return [], grafts.symmetry_state(self.design)
+            return [], orbits.symmetry_state(self.design)
         self._check_design_is_shown()
         patch = self._patches.load(request.patch)
         return [], grafts.planned(self.design, patch, request, self._now(), request.measure)
@@ -413,9 +432,9 @@ class Session:
     def _filed(self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch) -> None:
         match request:
             case CopyPatch():
-                looked = None if self._looking is None else self._looking[0]
+                looked = None if self._looking is None else self._looking.looked
                 origin = Origin()
-                if looked is not None:
+                if looked is not None and looked.generation is not None:
                     run, place = str(self.runs.known().folder), looked.individual
                     origin = Origin(run=run, generation=looked.generation, individual=place)
                 self._patches.keep(grafts.lifted(self.shown, request, origin))
@@ -445,42 +464,43 @@ class Session:
             return self.design
         if self._looking is None:
             raise InputError("look at an individual first")
-        return self._looking[1]
+        return self._looking.net.design
 
     async def _follow(self, on: bool) -> None:
         self.runs.following = on
         if on and self.runs.run is not None:
-            await self._look(self.runs.generations, None)
+            await self._look_at_newest()
         self._tell_runs()
 
-    async def _look(self, generation: int | None, individual: int | None) -> None:
-        if generation is None:
+    async def _look_at_newest(self) -> None:
+        newest = Look(id=0, generation=self.runs.generations, individual=None)
+        await self._look(newest)
+
+    async def _look(self, request: Look) -> None:
+        if request.generation is None and request.pin is None:
             self._looking = None
         else:
             if self._live.live is not None:
                 raise InputError("the net evolves; keep or discard what it grew first")
-            run = self.runs.known()
-
-            def rebuild() -> tuple[Looked, Design, Figures]:
-                if individual is None:
-                    found = run.parent(generation)
-                else:
-                    found = run.individual(generation, individual)
-                looked = Looked(generation=generation, individual=individual)
-                return looked, found, figures_of(found)
-
-            self._looking = await self._in_thread(rebuild)
+            self._looking = await self._in_thread(lambda: self.pins.looking(request))
         self._take_design()
+
+    def _pin(self, request: Pin | Unpin) -> None:
+        if isinstance(request, Pin):
+            self.pins.pin(request.side, self._looking)
+        else:
+            self.pins.folder.drop(request.pin)
 
     async def _reinstate(self) -> None:
         if self._looking is None:
             raise InputError("look at an individual first")
-        looked, design, _ = self._looking
-        name = f"generation {looked.generation}"
-        if looked.individual is not None:
-            name += f", individual {looked.individual}"
+        net = self._looking.net
+        label = net.label if net.place is None else net.place.label
+        label = f"Take over {label[0].lower()}{label[1:]}"
         self._looking, self.runs.following = None, False
-        await self.act(lambda: (commands.whole(self.design, design, f"Take over {name}"), []))
+        await self.act(
+            lambda: (commands.whole(self.design, net.design, label, net.place), []),
+        )
         self._tell_runs()
 
     def _check_design_is_shown(self) -> None:
@@ -491,12 +511,11 @@ class Session:
 
     async def _run_now(self) -> None:
         self._tell_runs()
-        newest = self.runs.generations
-        if not self.runs.following or not newest or self._order.locked():
+        if not self.runs.following or not self.runs.generations or self._order.locked():
             return
         async with self._order:
             with suppress(InputError):
-                await self._look(newest, None)
+                await self._look_at_newest()
                 self._tell_document()
 
     def _tell_runs(self) -> None:
@@ -517,9 +536,9 @@ class Session:
             self.shown,
             saved=self._saved is not None and self._saved == self.design.to_file(),
             revision=self._revision,
-            figures=self._figures[document.position] if looked is None else looked[2],
+            figures=self._figures[document.position] if looked is None else looked.figures,
             before=self._figures.get(document.position - 1) if looked is None else None,
-            looking=None if looked is None else looked[0],
+            looking=None if looked is None else looked.looked,
         )
 
     def _take_design(self) -> None:

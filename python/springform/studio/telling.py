@@ -10,9 +10,10 @@ from .. import _core
 from ..design import Design
 from ..design_schema import BUILT_IN_CELL_TYPES
 from ..network import Equilibrium
+from .figure_messages import Figures
 from .frame_messages import MotionHeader
 from .frames import encode, net_frame, tables_of
-from .messages import CellTypeChoice, Figures
+from .messages import CellTypeChoice
 from .motion import State
 
 

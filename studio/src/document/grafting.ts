@@ -19,7 +19,7 @@ export interface Grafting {
   plan: GraftPlan | null;
   /** Why it does not fit there. */
   problem: string;
-  /** Whether edits of cells are done to their whole orbit. */
+  /** Whether edits of cells and springs are done to their whole orbit. */
   lock: boolean;
   symmetry: SymmetryState | null;
   /** Outline of a box or a lasso that is being drawn, on the canvas [px]. */

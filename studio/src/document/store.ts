@@ -5,12 +5,13 @@ import type { Frame } from "../protocol/frames";
 import type {
   DocumentState,
   LiveState,
+  PinState,
   PreviewState,
   Protocol,
   Reply,
   RunState,
 } from "../protocol/messages";
-import type { Brushes } from "./choosing";
+import { type Brushes, SORT, type Sort } from "./choosing";
 import type { ColourChoice } from "./colouring";
 import { grafting } from "./grafting";
 import { type Motion, motionOf } from "./motion";
@@ -84,6 +85,14 @@ export interface State {
   individuals: Individuals;
   /** Brushes on axes of the individuals. */
   brushes: Brushes;
+  /** What individuals are sorted by, wherever they are shown. */
+  sort: Sort;
+  /** Pinned nets. */
+  pins: PinState[];
+  /** Whether the gallery shows what is pinned only. */
+  pinnedOnly: boolean;
+  /** Nets that are marked for a comparison, two at most. */
+  marked: string[];
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
   preview: Preview | null;
@@ -139,6 +148,10 @@ export const store = createStore<State>()(() => ({
   brush: GROW,
   individuals: NO_INDIVIDUALS,
   brushes: {},
+  sort: SORT,
+  pins: [],
+  pinnedOnly: false,
+  marked: [],
   gallery: false,
   preview: null,
   selection: NOTHING,
@@ -170,6 +183,10 @@ export function openDocument(id: string): void {
     run: null,
     live: null,
     individuals: NO_INDIVIDUALS,
+    brushes: {},
+    pins: [],
+    pinnedOnly: false,
+    marked: [],
     preview: null,
     selection: NOTHING,
     hover: null,
@@ -256,6 +273,7 @@ function takeEvent(event: Protocol["event"]): void {
   if (event.type === "document") store.setState({ document: event });
   if (event.type === "problem") notify(event.message);
   if (event.type === "run") takeRun(event);
+  if (event.type === "pins") store.setState({ pins: event.pins });
   if (event.type === "live") store.setState({ live: event });
   if (event.type === "patches") grafting.setState({ patches: event });
 }
@@ -268,7 +286,7 @@ function takeRun(state: RunState): void {
   const other = before?.state.folder !== state.folder;
   store.setState({
     run: withMessage(before, state),
-    ...(other ? { individuals: NO_INDIVIDUALS, brushes: {} } : {}),
+    ...(other ? { individuals: NO_INDIVIDUALS, brushes: {}, marked: [] } : {}),
   });
   if (tableTimer || state.generations === 0) return;
   tableTimer = window.setTimeout(async () => {

@@ -5,6 +5,7 @@ import { useCallback, useEffect, useMemo, useState } from "react";
 import { Toaster, toast } from "sonner";
 import { openDocument, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
+import { CompareOverlay, CompareTable, useIsComparing } from "./Compare";
 import { commandOfKey, type Dialogs } from "./commands";
 import { DialogsContext, useDialogs } from "./dialogs";
 import { LookingBanner } from "./EvolvePanel";
@@ -65,8 +66,10 @@ function Front() {
 function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
   const ready = useStudio((state) => state.document !== null);
   const gallery = useStudio((state) => state.gallery && state.run !== null);
+  const comparing = useIsComparing();
+  const classes = ["workbench", gallery && "with-gallery", comparing && "comparing"];
   return (
-    <div className={gallery ? "workbench with-gallery" : "workbench"}>
+    <div className={classes.filter(Boolean).join(" ")}>
       <TopBar />
       <ToolRail />
       <ViewportPane onStage={onStage}>
@@ -75,9 +78,11 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
         <OutlineOverlay />
         <LookingBanner />
         <LiveBanner />
+        <CompareOverlay />
         <LineState />
       </ViewportPane>
       {gallery && <Gallery />}
+      {comparing && <CompareTable />}
       {ready ? <Inspector /> : <aside className="inspector" aria-label="Panels" />}
       <StatusBar />
     </div>

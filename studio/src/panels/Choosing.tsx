@@ -1,10 +1,12 @@
 // Help with choosing: clusters of what is brushed, and where the individual that is looked at came from.
 import { useEffect, useState } from "react";
+import { pathOfSide, type Side, sideOf } from "../document/pins";
 import { inDigits } from "../document/scale";
-import { ask, notify, select, store } from "../document/store";
+import { notify, select, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { fetchClusters, fetchLineage } from "../protocol/fetching";
 import type { Clusters, Lineage } from "../protocol/messages";
+import { clickSide, IndividualMenu, keyOnSide } from "./IndividualMenu";
 import { NumberField, Section } from "./parts";
 import { Thumbnail } from "./Thumbnail";
 import { useStudio } from "./use";
@@ -14,6 +16,7 @@ export function ClusterSection() {
   const folder = useStudio((state) => state.run?.state.folder ?? "");
   const [count, setCount] = useState(6);
   const [found, setFound] = useState<Clusters | null>(null);
+  const [menu, setMenu] = useState<Side | null>(null);
   const group = () =>
     fetchClusters(documentInAddress(), { brushes, count }).then(setFound, (error: Error) =>
       notify(error.message),
@@ -35,29 +38,37 @@ export function ClusterSection() {
           individual in the middle of each.
         </p>
       )}
-      <div className="clusters">
-        {found?.clusters.map(({ generation, individual, size }, at) => (
-          <button
-            key={`${generation} ${individual}`}
-            type="button"
-            className="gallery-cell"
-            aria-label={`Representative ${at + 1} of ${size} individuals: generation ${generation}, individual ${individual}`}
-            onClick={() =>
-              ask({ type: "look", generation, individual }, "Rebuilding the individual")
-            }
-          >
-            <Thumbnail
-              path={`/api/documents/${document}/run/${generation}/${individual}`}
-              revision={folder}
-              width={82}
-              height={66}
-            />
-            <small>
-              <b>{size.toLocaleString("en")}</b> alike
-            </small>
-          </button>
-        ))}
-      </div>
+      <IndividualMenu
+        side={menu}
+        onOpen={setMenu}
+        sideUnder={(event) =>
+          (event.target as Element).closest<HTMLElement>("[data-side]")?.dataset.side ?? null
+        }
+      >
+        <div className="clusters">
+          {found?.clusters.map(({ generation, individual, size }, at) => (
+            <button
+              key={`${generation} ${individual}`}
+              type="button"
+              className="gallery-cell"
+              aria-label={`Representative ${at + 1} of ${size} individuals: generation ${generation}, individual ${individual}`}
+              data-side={sideOf(generation, individual)}
+              onClick={(event) => clickSide(event, sideOf(generation, individual))}
+              onKeyDown={(event) => keyOnSide(event, sideOf(generation, individual))}
+            >
+              <Thumbnail
+                path={pathOfSide(document, sideOf(generation, individual))}
+                revision={folder}
+                width={82}
+                height={66}
+              />
+              <small>
+                <b>{size.toLocaleString("en")}</b> alike
+              </small>
+            </button>
+          ))}
+        </div>
+      </IndividualMenu>
     </Section>
   );
 }
@@ -69,7 +80,7 @@ export function LineageSection() {
   useEffect(() => {
     let wanted = true;
     setLineage(null);
-    if (looking && looking.generation > 0)
+    if (looking?.generation)
       fetchLineage(documentInAddress(), looking.generation, looking.individual).then(
         (found) => wanted && setLineage(found),
         (error: Error) => notify(error.message),

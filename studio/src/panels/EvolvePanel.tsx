@@ -1,49 +1,26 @@
 // Evolution: its parameters, its course, all individuals, and what becomes of them.
-import { Images, Pause, Play, Square } from "lucide-react";
+import { Columns2, Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
+import { compare } from "../document/comparing";
+import { lookAt, shownSide } from "../document/pins";
 import { inDigits } from "../document/scale";
-import { ask, store } from "../document/store";
+import { type ParameterName, type Texts, textOf, valueOf } from "../document/parameters";
+import { ask, askQuietly, notify, store } from "../document/store";
+import type { Asking, Refused } from "../protocol/connection";
 import { ClusterSection, LineageSection } from "./Choosing";
 import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
-import { Choice, Fact, NumberField, Section } from "./parts";
+import { ParameterFields } from "./ParameterFields";
+import { PinButton, PinnedSection } from "./Pins";
+import { Fact, IconButton, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
+import { RankLegend, SortControl } from "./Sorting";
 import { useStudio } from "./use";
 
 /** What a person may set; the rest has the engine's defaults. */
-interface Form {
-  population: number;
-  generations: number;
-  insertions: string;
-  switches: string;
-  toggles: string;
-  types: string;
-  weighting: string;
-  fitness: string;
-  selection: string;
-  until_springs: number;
-  seed: number;
-}
-
-const DEFAULTS: Omit<Form, "types"> = {
-  population: 100,
-  generations: 300,
-  insertions: "3",
-  switches: "3",
-  toggles: "1",
-  weighting: "exponential",
-  fitness: "suf",
-  selection: "comma",
-  until_springs: 2000,
-  seed: 1,
-};
-
-const TYPES: Record<string, string> = { recursive: "1", extensible: "1,2,3,4,5", dynamic: "1,6" };
-
-/** Parameters that a run takes up while it goes on. */
-const CHANGEABLE = [
-  "generations",
+const SET = [
+  "population",
   "insertions",
   "switches",
   "toggles",
@@ -51,8 +28,34 @@ const CHANGEABLE = [
   "weighting",
   "fitness",
   "selection",
+  "symmetry",
   "until_springs",
-] as const;
+  "until_differential",
+  "generations",
+  "seed",
+] as const satisfies ParameterName[];
+
+const DEFAULTS: Texts = {
+  population: "100",
+  insertions: "3",
+  switches: "3",
+  toggles: "1",
+  weighting: "exponential",
+  fitness: "suf",
+  selection: "comma",
+  symmetry: "false",
+  until_springs: "2000",
+  until_differential: "0",
+  generations: "300",
+  seed: "1",
+};
+
+type Names = readonly ParameterName[];
+
+const TYPES: Record<string, string> = { recursive: "1", extensible: "1,2,3,4,5", dynamic: "1,6" };
+
+/** Those of them that a run keeps from its start. */
+const FIXED: ParameterName[] = ["population", "seed"];
 
 export function EvolvePanel() {
   const run = useStudio((state) => state.run);
@@ -61,8 +64,11 @@ export function EvolvePanel() {
     <>
       <LiveSection />
       {run && status !== "none" && <Course />}
+      <PinnedSection />
       {run && run.rows.length > 0 && (
         <Section title="Individuals" aside={<GalleryButton />}>
+          <SortControl label="Sorted by" />
+          <RankLegend />
           <Scatter />
           <ParallelCoordinates />
         </Section>
@@ -154,26 +160,26 @@ function words(status: string, reason: string): string {
 function Parameters() {
   const method = useStudio((state) => state.document!.method);
   const run = useStudio((state) => state.run);
-  const kept = (run?.state.parameters ?? {}) as Partial<Record<keyof Form, unknown>>;
-  const [form, setForm] = useState<Form>(() => formOf(kept, method));
-  const set = (change: Partial<Form>) => setForm((before) => ({ ...before, ...change }));
+  const [texts, setTexts] = useState<Texts>(() => textsOf(run?.state.parameters ?? {}, method));
+  const [problems, setProblems] = useState<Texts>({});
   const alive = run?.state.status === "running" || run?.state.status === "paused";
-  const start = () => {
-    ask(
-      {
-        type: "evolve",
-        looked: false,
-        parameters: { ...form, until_springs: form.until_springs || null },
-      },
-      "Starting the run",
-    );
+  const send = async (request: (values: Record<string, unknown>) => Asking, names: Names) => {
+    const values = names.map((name) => [name, valueOf(name, texts[name] ?? "")]);
+    setProblems({});
+    try {
+      await askQuietly(request(Object.fromEntries(values)));
+    } catch (error) {
+      const { key, words } = error as Refused;
+      if (names.includes(key as ParameterName)) setProblems({ [key as string]: words });
+      else notify((error as Error).message);
+    }
   };
-  const change = () => {
-    const parameters = Object.fromEntries(
-      CHANGEABLE.map((name) => [name, name === "until_springs" ? form[name] || null : form[name]]),
+  const start = () => send((parameters) => ({ type: "evolve", looked: false, parameters }), SET);
+  const change = () =>
+    send(
+      (parameters) => ({ type: "steer_run", what: "change", parameters }),
+      SET.filter((name) => !FIXED.includes(name)),
     );
-    ask({ type: "steer_run", what: "change", parameters }, "Changing the parameters");
-  };
   return (
     <Section title="Parameters">
       {!run || run.state.status === "none" ? (
@@ -182,83 +188,14 @@ function Parameters() {
           the parent of the next. Your design stays as it is until you take a net over.
         </p>
       ) : null}
-      <NumberField
-        label="Mutants a generation"
-        value={form.population}
-        least={1}
-        whole
-        onTake={(population) => set({ population })}
-      />
-      <AmountField
-        label="Cells subdivided"
-        value={form.insertions}
-        onTake={(insertions) => set({ insertions })}
-      />
-      <AmountField
-        label="Cells that change type"
-        value={form.switches}
-        onTake={(switches) => set({ switches })}
-      />
-      <AmountField
-        label="Subdivisions turned off or on"
-        value={form.toggles}
-        onTake={(toggles) => set({ toggles })}
-      />
-      <AmountField
-        label="Types that are drawn"
-        value={form.types}
-        onTake={(types) => set({ types })}
-      />
-      <Choice
-        label="Cells are drawn"
-        value={form.weighting}
-        options={[
-          { value: "unweighted", name: "evenly" },
-          { value: "linear", name: "rather coarse ones" },
-          { value: "exponential", name: "evenly by area" },
-          { value: "deep", name: "rather fine ones" },
-          { value: "stress", name: "by their force" },
-        ]}
-        onTake={(weighting) => set({ weighting })}
-      />
-      <Choice
-        label="Best is the least"
-        value={form.fitness}
-        options={[
-          { value: "suf", name: "spring utilization" },
-          { value: "differential", name: "force differential" },
-        ]}
-        onTake={(fitness) => set({ fitness })}
-      />
-      <Choice
-        label="The parent"
-        value={form.selection}
-        options={[
-          { value: "comma", name: "always gives way" },
-          { value: "plus", name: "stays while it is best" },
-        ]}
-        onTake={(selection) => set({ selection })}
-      />
-      <NumberField
-        label="End at springs (0: never)"
-        value={form.until_springs}
-        least={0}
-        whole
-        onTake={(until_springs) => set({ until_springs })}
-      />
-      <NumberField
-        label="End at generation"
-        value={form.generations}
-        least={1}
-        whole
-        onTake={(generations) => set({ generations })}
-      />
-      <NumberField
-        label="Seed"
-        value={form.seed}
-        least={0}
-        whole
-        onTake={(seed) => set({ seed })}
+      <ParameterFields
+        names={SET}
+        texts={texts}
+        problems={problems}
+        onTake={(name, text) => {
+          setTexts((before) => ({ ...before, [name]: text }));
+          setProblems((before) => ({ ...before, [name]: "" }));
+        }}
       />
       <div className="row">
         <button type="button" className={alive ? "button" : "button primary"} onClick={start}>
@@ -274,34 +211,10 @@ function Parameters() {
   );
 }
 
-function formOf(kept: Partial<Record<keyof Form, unknown>>, method: string): Form {
-  const form: Form = { ...DEFAULTS, types: TYPES[method] ?? "1" };
-  for (const name of Object.keys(form) as (keyof Form)[]) {
-    const value = kept[name];
-    if (name === "types" && Array.isArray(value)) form.types = value.join(",");
-    else if (value !== undefined && value !== null && name !== "types")
-      Object.assign(form, { [name]: value });
-    else if (name === "until_springs" && value === null) form.until_springs = 0;
-  }
-  return form;
-}
-
-/** An amount such as 3 or 5%, or a list of types; the engine says what is wrong with it. */
-function AmountField({
-  label,
-  value,
-  onTake,
-}: {
-  label: string;
-  value: string;
-  onTake(value: string): void;
-}) {
-  return (
-    <label className="number-field">
-      <span>{label}</span>
-      <input value={value} onChange={(event) => onTake(event.target.value)} />
-    </label>
-  );
+function textsOf(kept: Record<string, unknown>, method: string): Texts {
+  const texts: Texts = { ...DEFAULTS, types: TYPES[method] ?? "1" };
+  for (const name of SET) if (name in kept) texts[name] = textOf(name, kept[name]);
+  return texts;
 }
 
 function GalleryButton() {
@@ -321,9 +234,7 @@ function GalleryButton() {
 /** Parameters of a run for another one that goes on from one of its individuals. */
 function changeableOf(parameters: Record<string, unknown>): Record<string, unknown> {
   return Object.fromEntries(
-    ["population", "seed", ...CHANGEABLE].flatMap((name) =>
-      parameters[name] == null ? [] : [[name, parameters[name]]],
-    ),
+    SET.flatMap((name) => (parameters[name] == null ? [] : [[name, parameters[name]]])),
   );
 }
 
@@ -336,10 +247,7 @@ export function LookingBanner() {
   return (
     <div className="looking" role="status">
       <span>
-        <b>
-          Generation {looking.generation}
-          {looking.individual === null ? ", its parent" : `, individual ${looking.individual}`}
-        </b>
+        <b>{looking.label}</b>
         {figures.springs.toLocaleString("en")} springs, force differential{" "}
         {inDigits(figures.force_differential, 4)}
       </span>
@@ -362,13 +270,17 @@ export function LookingBanner() {
       >
         Breed from this
       </button>
-      <button
-        type="button"
-        className="button"
-        onClick={() => ask({ type: "look", generation: null, individual: null })}
-      >
+      <button type="button" className="button" onClick={() => lookAt("design")}>
         Back to my design
       </button>
+      <PinButton />
+      <IconButton
+        label="Compare with my design"
+        keys="Shift+P"
+        onClick={() => compare("design", shownSide(store.getState().document))}
+      >
+        <Columns2 />
+      </IconButton>
     </div>
   );
 }

@@ -1,93 +1,187 @@
-// All individuals of a run as pictures, a row a generation, the best first; only what is in sight is there.
+// All individuals of a run as pictures: a row a generation, or one ranking; only what is in sight is there.
 import { useVirtualizer } from "@tanstack/react-virtual";
-import { X } from "lucide-react";
-import { useMemo, useRef, useState } from "react";
-import { maskOf } from "../document/choosing";
-import type { Individuals } from "../document/run";
+import { Columns2, Pin, Rows3, X } from "lucide-react";
+import { memo, type RefObject, useEffect, useMemo, useRef, useState } from "react";
+import { byGeneration, measureOf, placeOnAxis, type Sort } from "../document/choosing";
+import {
+  pathOfSide,
+  pinnedRows,
+  type Side,
+  shownSide,
+  sideOfRow,
+  togglePin,
+} from "../document/pins";
+import { type Individuals, placeOf } from "../document/run";
 import { inDigits } from "../document/scale";
-import { ask, store } from "../document/store";
-import { Choice, IconButton } from "./parts";
+import { store } from "../document/store";
+import { clickSide, compareMarked, IndividualMenu, keyOnSide } from "./IndividualMenu";
+import { IconButton } from "./parts";
+import { SortControl, useRanking } from "./Sorting";
 import { Thumbnail } from "./Thumbnail";
 import { useStudio } from "./use";
 
 const WIDTH = 116; // px
 const HEIGHT = 108; // px
+const MARGIN = 44; // px
 
-type Order = "differential" | "springs" | "number";
+/** Individuals in rows, as they are shown. */
+interface Shelves {
+  count: number;
+  /** Most individuals in a row. */
+  longest: number;
+  labelOf(at: number): number;
+  rowsOf(at: number): Uint32Array;
+}
 
 export function Gallery() {
   const individuals = useStudio((state) => state.individuals);
+  const sort = useStudio((state) => state.sort);
+  const { rows, generations } = useShown();
+  const box = useRef<HTMLDivElement>(null);
+  const inRow = useColumns(box);
+  const shelves = useMemo<Shelves>(() => {
+    if (sort.byGeneration) {
+      const parted = byGeneration(individuals, rows);
+      return {
+        count: parted.generations.length,
+        longest: individuals.population,
+        labelOf: (at) => parted.generations[at],
+        rowsOf: (at) => parted.rows.subarray(parted.starts[at], parted.starts[at + 1]),
+      };
+    }
+    return {
+      count: Math.ceil(rows.length / inRow),
+      longest: Math.min(inRow, rows.length),
+      labelOf: (at) => at * inRow + 1,
+      rowsOf: (at) => rows.subarray(at * inRow, (at + 1) * inRow),
+    };
+  }, [individuals, rows, sort.byGeneration, inRow]);
+  return (
+    <section className="gallery" aria-label="Individuals">
+      <Header
+        words={`${rows.length.toLocaleString("en")} in ${generations} generation${generations === 1 ? "" : "s"}${sort.byGeneration ? ", the newest first" : ", ranked"}`}
+      />
+      {individuals.springs.length === 0 && (
+        <p className="explain">The first generation is on its way.</p>
+      )}
+      <Body box={box} shelves={shelves} />
+    </section>
+  );
+}
+
+/** Rows of what is brushed, and pinned if only that is to be shown, in the order of the sort key. */
+function useShown(): { rows: Uint32Array; generations: number } {
+  const individuals = useStudio((state) => state.individuals);
+  const pins = useStudio((state) => state.pins);
+  const only = useStudio((state) => state.pinnedOnly);
+  const name = useStudio((state) => state.run?.state.name ?? "");
+  const ranking = useRanking();
+  return useMemo(() => {
+    const pinned = only ? new Set(pinnedRows(individuals, pins, name)) : null;
+    const rows = pinned ? ranking.rows.filter((row) => pinned.has(row)) : ranking.rows;
+    const made = new Set<number>();
+    for (const row of rows) made.add(Math.floor(row / individuals.population));
+    return { rows, generations: made.size };
+  }, [individuals, ranking, pins, only, name]);
+}
+
+/** How many pictures stand side by side in a ranking. */
+function useColumns(box: RefObject<HTMLDivElement | null>): number {
+  const [width, setWidth] = useState(MARGIN + 8 * WIDTH);
+  useEffect(() => {
+    const observer = new ResizeObserver(([{ contentRect }]) => setWidth(contentRect.width));
+    observer.observe(box.current!);
+    return () => observer.disconnect();
+  }, [box]);
+  return Math.max(1, Math.floor((width - MARGIN) / WIDTH));
+}
+
+function Header({ words }: { words: string }) {
+  const rows = useStudio((state) => state.sort.byGeneration);
+  const only = useStudio((state) => state.pinnedOnly);
+  const marked = useStudio((state) => state.marked);
+  return (
+    <header>
+      <h2>Individuals</h2>
+      <span>{words}</span>
+      <div className="gap" />
+      {marked.length > 0 && (
+        <button
+          type="button"
+          className={marked.length === 2 ? "button icon primary" : "button icon"}
+          disabled={marked.length < 2}
+          onClick={compareMarked}
+        >
+          <Columns2 /> {marked.length === 2 ? "Compare" : "Mark another one"}
+        </button>
+      )}
+      <SortControl label="Sorted by" />
+      <IconButton
+        label="A row a generation"
+        side="top"
+        pressed={rows}
+        onClick={() =>
+          store.setState(({ sort }) => ({ sort: { ...sort, byGeneration: !sort.byGeneration } }))
+        }
+      >
+        <Rows3 />
+      </IconButton>
+      <IconButton
+        label="Pinned only"
+        side="top"
+        pressed={only}
+        onClick={() => store.setState({ pinnedOnly: !only })}
+      >
+        <Pin />
+      </IconButton>
+      <IconButton
+        label="Close the individuals"
+        side="top"
+        onClick={() => store.setState({ gallery: false })}
+      >
+        <X />
+      </IconButton>
+    </header>
+  );
+}
+
+function Body({ box, shelves }: { box: RefObject<HTMLDivElement | null>; shelves: Shelves }) {
+  const individuals = useStudio((state) => state.individuals);
+  const only = useStudio((state) => state.pinnedOnly);
+  const [hovered, setHovered] = useState<number | null>(null);
+  const [menu, setMenu] = useState<Side | null>(null);
+  const pinned = usePinned();
   const folder = useStudio((state) => state.run?.state.folder ?? "");
   const document = useStudio((state) => state.document?.document ?? "");
-  const looking = useStudio((state) => state.document?.looking ?? null);
-  const [order, setOrder] = useState<Order>("differential");
-  const box = useRef<HTMLDivElement>(null);
-  const generations = Math.floor(individuals.springs.length / individuals.population);
-  const brushes = useStudio((state) => state.brushes);
-  const mask = useMemo(() => maskOf(individuals, brushes), [individuals, brushes]);
-  /** Generations with somebody to show, the newest first. */
-  const shown = useMemo(() => {
-    const all = Array.from({ length: generations }, (_, at) => generations - at);
-    const { population } = individuals;
-    return mask
-      ? all.filter((one) => mask.subarray((one - 1) * population, one * population).includes(1))
-      : all;
-  }, [generations, individuals, mask]);
-  const chosen = mask
-    ? mask.reduce((sum, one) => sum + one, 0)
-    : generations * individuals.population;
+  const sort = useStudio((state) => state.sort);
+  const current = useStudio((state) => shownSide(state.document));
+  const marked = useStudio((state) => state.marked);
   const rows = useVirtualizer({
-    count: shown.length,
+    count: shelves.count,
     getScrollElement: () => box.current,
     estimateSize: () => HEIGHT,
     overscan: 1,
   });
   const columns = useVirtualizer({
-    count: individuals.population,
+    count: shelves.longest,
     getScrollElement: () => box.current,
     estimateSize: () => WIDTH,
     horizontal: true,
-    overscan: 2,
-    paddingStart: 44,
+    overscan: 1,
+    paddingStart: MARGIN,
   });
-  // biome-ignore lint/correctness/useExhaustiveDependencies: made anew when there are more, or another order
-  const orders = useMemo(() => new Map<number, number[]>(), [individuals, order, mask]);
-  const orderOf = (generation: number) => {
-    let found = orders.get(generation);
-    if (!found) {
-      found = ordered(individuals, generation, order, mask);
-      orders.set(generation, found);
-    }
-    return found;
-  };
   return (
-    <section className="gallery" aria-label="Individuals">
-      <header>
-        <h2>Individuals</h2>
-        <span>
-          {chosen.toLocaleString("en")} in {shown.length} generations, the newest first
-        </span>
-        <div className="gap" />
-        <Choice
-          label="Order within a generation"
-          value={order}
-          options={[
-            { value: "differential", name: "Force differential" },
-            { value: "springs", name: "Springs" },
-            { value: "number", name: "Number" },
-          ]}
-          onTake={(taken: Order) => setOrder(taken)}
-        />
-        <IconButton
-          label="Close the individuals"
-          side="top"
-          onClick={() => store.setState({ gallery: false })}
-        >
-          <X />
-        </IconButton>
-      </header>
-      {generations === 0 && <p className="explain">The first generation is on its way.</p>}
-      <div className="gallery-box" ref={box}>
+    <IndividualMenu
+      side={menu}
+      onOpen={setMenu}
+      sideUnder={(event) =>
+        (event.target as Element).closest<HTMLElement>("[data-side]")?.dataset.side ?? null
+      }
+    >
+      <div className="gallery-box" ref={box} onPointerLeave={() => setHovered(null)}>
+        {only && shelves.count === 0 && (
+          <p className="explain">Nothing of this run is pinned and brushed.</p>
+        )}
         <div
           style={{
             height: rows.getTotalSize(),
@@ -96,48 +190,34 @@ export function Gallery() {
           }}
         >
           {rows.getVirtualItems().map((row) => {
-            const generation = shown[row.index];
-            const order = orderOf(generation);
+            const shelf = shelves.rowsOf(row.index);
             return (
               <div
-                key={generation}
+                key={row.key}
                 className="gallery-row"
                 style={{ transform: `translateY(${row.start}px)`, height: HEIGHT }}
               >
-                <b>{generation}</b>
+                <b>{shelves.labelOf(row.index).toLocaleString("en")}</b>
                 {columns.getVirtualItems().map((column) => {
-                  const individual = order[column.index];
-                  if (individual === undefined) return null;
-                  const at = (generation - 1) * individuals.population + individual;
-                  const differential = inDigits(individuals.differential[at]);
-                  const current =
-                    looking?.generation === generation && looking.individual === individual;
+                  const at = shelf[column.index];
+                  if (at === undefined) return null;
+                  const side = sideOfRow(individuals, at);
                   return (
-                    <button
-                      key={individual}
-                      type="button"
-                      className="gallery-cell"
-                      aria-pressed={current}
-                      aria-label={`Generation ${generation}, individual ${individual}: ${individuals.springs[at]} springs, force differential ${differential}`}
-                      style={{
-                        transform: `translateX(${column.start}px)`,
-                        width: WIDTH - 6,
-                        height: HEIGHT - 6,
-                      }}
-                      onClick={() =>
-                        ask({ type: "look", generation, individual }, "Rebuilding the individual")
-                      }
-                    >
-                      <Thumbnail
-                        path={`/api/documents/${document}/run/${generation}/${individual}`}
-                        revision={folder}
-                        width={WIDTH - 14}
-                        height={HEIGHT - 34}
-                      />
-                      <small>
-                        <b>{differential}</b> · {individuals.springs[at]}
-                      </small>
-                    </button>
+                    <Cell
+                      key={at}
+                      individuals={individuals}
+                      row={at}
+                      side={side}
+                      path={pathOfSide(document, side)}
+                      folder={folder}
+                      sort={sort}
+                      current={side === current}
+                      marked={marked.includes(side)}
+                      start={column.start}
+                      pinned={pinned.has(at)}
+                      hovered={hovered === at}
+                      onHover={setHovered}
+                    />
                   );
                 })}
               </div>
@@ -145,28 +225,83 @@ export function Gallery() {
           })}
         </div>
       </div>
-    </section>
+    </IndividualMenu>
   );
 }
 
-function ordered(
-  { population, springs, differential }: Individuals,
-  generation: number,
-  order: Order,
-  mask: Uint8Array | null,
-): number[] {
-  const first = (generation - 1) * population;
-  const numbers = Array.from({ length: population }, (_, number) => number).filter(
-    (number) => !mask || mask[first + number],
-  );
-  if (order === "number") return numbers;
-  const value = (number: number) => {
-    const found = (order === "springs" ? springs : differential)[first + number];
-    return Number.isFinite(found) ? found : Number.POSITIVE_INFINITY;
-  };
-  const values = new Map(numbers.map((number) => [number, value(number)]));
-  return numbers.sort((a, b) => {
-    const [first, second] = [values.get(a)!, values.get(b)!];
-    return first === second ? a - b : first < second ? -1 : 1;
-  });
+/** Rows that are pinned. */
+function usePinned(): Set<number> {
+  const individuals = useStudio((state) => state.individuals);
+  const pins = useStudio((state) => state.pins);
+  const name = useStudio((state) => state.run?.state.name ?? "");
+  return useMemo(() => new Set(pinnedRows(individuals, pins, name)), [individuals, pins, name]);
 }
+
+const Cell = memo(function Cell({
+  individuals,
+  row,
+  side,
+  path,
+  folder,
+  sort,
+  current,
+  marked,
+  start,
+  pinned,
+  hovered,
+  onHover,
+}: {
+  individuals: Individuals;
+  row: number;
+  side: Side;
+  path: string;
+  folder: string;
+  sort: Sort;
+  /** Whether it is looked at. */
+  current: boolean;
+  marked: boolean;
+  start: number;
+  pinned: boolean;
+  hovered: boolean;
+  onHover(row: number): void;
+}) {
+  const { generation, individual } = placeOf(individuals, row);
+  const springs = individuals.springs[row];
+  const differential = inDigits(individuals.differential[row]);
+  const plain = ["force_differential", "springs", "generation"].includes(sort.by);
+  const value = plain ? differential : inDigits(placeOnAxis(individuals, sort.by, row));
+  return (
+    <>
+      <button
+        type="button"
+        className={marked ? "gallery-cell marked" : "gallery-cell"}
+        data-side={side}
+        aria-pressed={current}
+        aria-label={`Generation ${generation}, individual ${individual}: ${springs} springs, force differential ${differential}${pinned ? ", pinned" : ""}${marked ? ", marked" : ""}`}
+        style={{ transform: `translateX(${start}px)`, width: WIDTH - 6, height: HEIGHT - 6 }}
+        onClick={(event) => clickSide(event, side)}
+        onKeyDown={(event) => keyOnSide(event, side)}
+        onPointerEnter={() => onHover(row)}
+        onFocus={() => onHover(row)}
+      >
+        <Thumbnail path={path} revision={folder} width={WIDTH - 14} height={HEIGHT - 34} />
+        <small>
+          <b>{value}</b> {!plain && measureOf(sort).unit} · {springs}
+        </small>
+      </button>
+      {(pinned || hovered) && (
+        <button
+          type="button"
+          className={pinned ? "gallery-pin pinned" : "gallery-pin"}
+          data-side={side}
+          tabIndex={-1}
+          aria-label={`${pinned ? "Unpin" : "Pin"} generation ${generation}, individual ${individual}`}
+          style={{ transform: `translateX(${start + WIDTH - 34}px)` }}
+          onClick={() => togglePin(side)}
+        >
+          <Pin />
+        </button>
+      )}
+    </>
+  );
+});

@@ -240,14 +240,24 @@ const PLACES: { value: Place; name: string }[] = [
 ];
 
 function Setting() {
-  const { chosen, place, plan, pinned, problem, rotate, mirror } = useGrafting((state) => state);
+  const { chosen, place, plan, pinned, problem, rotate, mirror, patches } = useGrafting(
+    (state) => state,
+  );
   if (!chosen) return null;
+  const turns = plan?.turns ?? 4;
+  const step = ((rotate % turns) + turns) % turns;
+  const cells = patches?.patches.find(({ name }) => name === chosen)?.top_level ?? 0;
   return (
     <Section title={`Graft ${chosen}`}>
       <Choice label="To" value={place} options={PLACES} onTake={changePlace} />
       <div className="row">
-        <button type="button" className="button icon" onClick={() => turnGhost({ rotate: 1 })}>
-          <RotateCw /> Rotate{rotate % 4 ? ` (${((rotate % 4) + 4) % 4})` : ""}
+        <button
+          type="button"
+          className="button icon"
+          disabled={turns === 1}
+          onClick={() => turnGhost({ rotate: 1 })}
+        >
+          <RotateCw /> Rotate{step ? ` (${step} of ${turns})` : ""}
         </button>
         <button
           type="button"
@@ -258,6 +268,12 @@ function Setting() {
           <FlipHorizontal2 /> Mirror
         </button>
       </div>
+      {turns === 1 && (
+        <p className="explain">
+          Turned any further round {place === "anchors" ? "these anchors" : "this anchor"}, part of
+          the patch would fall off the net.
+        </p>
+      )}
       {problem && (
         <p className="problem graft-problem" role="alert">
           {problem}
@@ -275,7 +291,8 @@ function Setting() {
       {plan && (
         <p className="explain">
           {plan.placed.length} {plan.placed.length === 1 ? "place" : "places"},{" "}
-          {plan.placed.reduce((sum, { cells }) => sum + cells.length, 0)} top-level cells
+          {plan.placed.reduce((sum, { cells: here }) => sum + here.length, 0)} of{" "}
+          {plan.placed.length * cells} top-level cells
           {plan.skipped.length > 0 && (
             <span className="warning" title={plan.skipped.join("\n")}>
               {" "}
@@ -352,7 +369,7 @@ function Symmetry() {
     <Section title="Symmetry">
       <label className="check">
         <input type="checkbox" checked={lock} onChange={toggleLock} />
-        Lock: edit all cells that are alike
+        Lock: edit all cells and springs that are alike
       </label>
       <p className="explain">
         <SymmetryWords />

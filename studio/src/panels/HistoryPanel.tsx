@@ -1,4 +1,5 @@
 // All that was done, in order; a click goes back or forth to it.
+import { GitBranch } from "lucide-react";
 import { useEffect, useRef } from "react";
 import { ask } from "../document/store";
 import { useStudio } from "./use";
@@ -12,14 +13,17 @@ export function HistoryPanel() {
   }, [position]);
   const travel = (to: number) => ask({ type: "travel", position: to }, "Going through the history");
   const first = history[0]?.number ?? 1;
-  const entries = [...(first === 1 ? [{ number: 0, label: "Start" }] : []), ...history];
+  const entries = [
+    ...(first === 1 ? [{ number: 0, label: "Start", origin: null }] : []),
+    ...history,
+  ];
   return (
     <>
       <p className="explain">
         Kept as you work, and still here after the studio was closed. Click to go back or forth.
       </p>
       <ol className="history" aria-label="History">
-        {entries.map(({ number, label }) => (
+        {entries.map(({ number, label, origin }) => (
           <li key={number}>
             <button
               type="button"
@@ -30,6 +34,13 @@ export function HistoryPanel() {
             >
               <span className="number">{number || ""}</span>
               {label}
+              {origin && (
+                <GitBranch
+                  className="branch"
+                  role="img"
+                  aria-label={`branched from ${origin.run}`}
+                />
+              )}
             </button>
           </li>
         ))}

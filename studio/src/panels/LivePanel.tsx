@@ -1,10 +1,14 @@
 // Live evolution: the net evolves before one's eyes; anchors are dragged and cells brushed meanwhile.
 import { Check, Eraser, Pause, Play, Sprout, Square, X } from "lucide-react";
 import type { ReactNode } from "react";
+import { useState } from "react";
+import { type ParameterName, type Texts, textOf, valueOf } from "../document/parameters";
 import { inDigits } from "../document/scale";
-import { ask, store } from "../document/store";
+import { ask, askQuietly, store } from "../document/store";
 import { GROW } from "../document/weights";
+import type { Refused } from "../protocol/connection";
 import type { GenerationRow, LiveState } from "../protocol/messages";
+import { ParameterFields } from "./ParameterFields";
 import { Fact, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { useStudio } from "./use";
@@ -44,7 +48,70 @@ export function LiveSection() {
         </>
       )}
       <Brushes />
+      {live && <LiveParameters live={live} />}
     </Section>
+  );
+}
+
+/** Parameters that live evolution takes up at once. */
+const SET = [
+  "population",
+  "insertions",
+  "switches",
+  "toggles",
+  "types",
+  "weighting",
+  "fitness",
+  "selection",
+  "symmetry",
+  "max_springs",
+  "until_springs",
+  "until_differential",
+  "seed",
+] as const satisfies ParameterName[];
+
+/** A goal does not end it: it stands still there, and goes on when it is told to. */
+const LABELS: Texts = {
+  until_springs: "Pause at springs (0: never)",
+  until_differential: "Pause at force differential (0: never)",
+};
+
+function LiveParameters({ live }: { live: LiveState }) {
+  const [problems, setProblems] = useState<Texts>({});
+  const texts: Texts = Object.fromEntries(
+    SET.map((name) => [name, textOf(name, live.parameters[name])]),
+  );
+  const take = async (name: ParameterName, text: string) => {
+    let problem = "";
+    try {
+      const parameters = { [name]: valueOf(name, text) };
+      await askQuietly({ type: "live_evolve", what: "change", parameters });
+    } catch (error) {
+      problem = (error as Refused).words;
+    }
+    setProblems((before) => ({ ...before, [name]: problem }));
+  };
+  const changed = live.changed.length;
+  return (
+    <details className="live-parameters">
+      <summary>
+        Parameters{changed > 0 && <span className="aside">{changed} changed</span>}
+      </summary>
+      <p className="explain">Changes count from the next generation on.</p>
+      <ParameterFields names={SET} texts={texts} problems={problems} labels={LABELS} onTake={take} />
+      {changed > 0 && (
+        <button
+          type="button"
+          className="link"
+          onClick={() => {
+            setProblems({});
+            ask({ type: "live_evolve", what: "defaults", parameters: {} });
+          }}
+        >
+          Back to the defaults
+        </button>
+      )}
+    </details>
   );
 }
 
@@ -133,8 +200,13 @@ export function LiveBanner() {
         </b>
         {live.status === "failed"
           ? live.reason
-          : `${rateOf(live)} · ${(last?.springs ?? 0).toLocaleString("en")} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
+          : `${live.reason || rateOf(live)} · ${(last?.springs ?? 0).toLocaleString("en")} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
       </span>
+      {live.status === "paused" && (
+        <button type="button" className="button icon" onClick={() => steerLive("continue")}>
+          <Play /> Continue
+        </button>
+      )}
       <button type="button" className="button icon primary" onClick={() => steerLive("keep")}>
         <Check /> Keep
       </button>

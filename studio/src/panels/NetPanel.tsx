@@ -4,6 +4,7 @@ import { ask } from "../document/store";
 import { DensitySection } from "./DensitySection";
 import { FilterSection } from "./FilterSection";
 import { foreseen } from "./foreseen";
+import { useGrafting } from "./GraftPanel";
 import { Choice, Fact, NumberField, Section } from "./parts";
 import { ReactionTable } from "./ReactionTable";
 import { SelectionSections } from "./SelectionSections";
@@ -67,11 +68,18 @@ function StressSeeking() {
   const [steps, setSteps] = useState(10);
   const [kind, setKind] = useState("1");
   const known = types.some(({ word }) => word === kind) ? kind : (types[0]?.word ?? "1");
+  const orbit = useGrafting((state) => state.lock);
   const seek = (count: number) =>
-    ask({ type: "seek_stress", steps: count, kind: known }, `Seeking stress, ${count} steps`);
+    ask(
+      { type: "seek_stress", steps: count, kind: known, orbit },
+      `Seeking stress, ${count} steps`,
+    );
   return (
     <Section title="Stress-seeking">
-      <p className="explain">Subdivides the cell that carries most, solves, and does so again.</p>
+      <p className="explain">
+        Subdivides the cell that carries most{orbit && " and all that are like it (symmetry lock)"},
+        solves, and does so again.
+      </p>
       <Choice
         label="Type of the children"
         value={known}
@@ -96,6 +104,7 @@ function StressSeeking() {
             type: "seek_stress",
             steps: 1,
             kind: known,
+            orbit,
           })}
           onClick={() => seek(1)}
         >

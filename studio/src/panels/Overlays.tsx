@@ -13,6 +13,7 @@ const GROUPS: Group[] = [
   "Cells",
   "Selecting",
   "Grafting",
+  "Choosing",
   "Springs and nodes",
   "Tools",
   "View",
@@ -90,6 +91,7 @@ const MOUSE: [string, string][] = [
   ["Drag beside the net", "orbit"],
   ["Middle drag, ⇧ drag", "pan"],
   ["Wheel", "zoom to the pointer"],
+  ["⇧ click an individual", "mark it for a comparison"],
 ];
 
 function KeySheet() {

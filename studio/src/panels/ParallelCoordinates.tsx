@@ -1,8 +1,17 @@
 // Individuals as lines across axes; a drag along an axis brushes it, and all other pictures follow.
 import { useEffect, useMemo, useRef, useState } from "react";
-import { AXES, type Axis, maskOf, placeOnAxis, rangeOf } from "../document/choosing";
+import {
+  AXES,
+  type Axis,
+  measureOf,
+  placeOnAxis,
+  rangeOf,
+  shareOfPlace,
+} from "../document/choosing";
+import { pinnedRows } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { store } from "../document/store";
+import { colourOfShade, shadeOf, useRanking } from "./Sorting";
 import { useStudio } from "./use";
 
 const WIDTH = 292; // px
@@ -38,8 +47,12 @@ export function ParallelCoordinates() {
   const theme = useStudio((state) => state.theme);
   const [stroke, setStroke] = useState<{ axis: number; from: number } | null>(null);
   const ranges = useMemo(() => AXES.map(({ id }) => rangeOf(individuals, id)), [individuals]);
-  const mask = useMemo(() => maskOf(individuals, brushes), [individuals, brushes]);
-  // biome-ignore lint/correctness/useExhaustiveDependencies: colours follow the theme
+  const ranking = useRanking();
+  const sort = useStudio((state) => state.sort);
+  const pins = useStudio((state) => state.pins);
+  const name = useStudio((state) => state.run?.state.name ?? "");
+  const looking = useStudio((state) => state.document?.looking ?? null);
+  const mask = Object.keys(brushes).length > 0;
   useEffect(() => {
     const context = canvas.current?.getContext("2d");
     if (!context || !canvas.current) return;
@@ -50,28 +63,52 @@ export function ParallelCoordinates() {
     const styles = getComputedStyle(document.documentElement);
     const colour = (name: string) => styles.getPropertyValue(name).trim();
     const count = individuals.springs.length;
-    const step = Math.max(1, Math.ceil(count / MOST_LINES));
-    const lines = (chosen: boolean) => {
-      context.beginPath();
-      for (let row = 0; row < count; row += step) {
-        if ((mask === null || mask[row] === 1) !== chosen) continue;
-        AXES.forEach((axis, at) => {
-          const share = shareOf(axis, ranges[at], placeOnAxis(individuals, axis.id, row));
-          if (!Number.isFinite(share)) return;
-          if (at) context.lineTo(x(at), y(share));
-          else context.moveTo(x(at), y(share));
-        });
-      }
-      context.stroke();
+    const line = (row: number) => {
+      AXES.forEach((axis, at) => {
+        const share = shareOf(axis, ranges[at], placeOnAxis(individuals, axis.id, row));
+        if (!Number.isFinite(share)) return;
+        if (at) context.lineTo(x(at), y(share));
+        else context.moveTo(x(at), y(share));
+      });
     };
     context.lineWidth = 0.6;
     context.strokeStyle = colour("--line-strong");
     context.globalAlpha = 0.35;
-    lines(false);
-    context.strokeStyle = colour("--accent");
-    context.globalAlpha = Math.max(0.05, Math.min(0.5, 60 / Math.sqrt(count / step + 1) / 10));
-    lines(true);
+    context.beginPath();
+    for (let row = 0; row < count; row += Math.max(1, Math.ceil(count / MOST_LINES)))
+      if (ranking.place[row] < 0) line(row);
+    context.stroke();
+    const { rows } = ranking;
+    const step = Math.max(1, Math.ceil(rows.length / MOST_LINES));
+    const drawn = Math.ceil(rows.length / step);
+    context.globalAlpha = Math.max(0.12, Math.min(0.8, 12 / Math.sqrt(drawn + 1)));
+    context.beginPath();
+    let shade = -1;
+    // The first of the ranking are drawn last, so that they lie on top.
+    for (let at = drawn - 1; at >= 0; at--) {
+      const wanted = shadeOf(shareOfPlace(ranking, at * step));
+      if (wanted !== shade) {
+        context.stroke();
+        context.beginPath();
+        context.strokeStyle = colourOfShade(wanted, theme);
+        shade = wanted;
+      }
+      line(rows[at * step]);
+    }
+    context.stroke();
     context.globalAlpha = 1;
+    context.lineWidth = 1.6;
+    const marked = (name: string, row: number) => {
+      if (row >= count) return;
+      context.strokeStyle = colour(name);
+      context.beginPath();
+      line(row);
+      context.stroke();
+    };
+    for (const row of pinnedRows(individuals, pins, name))
+      if (ranking.place[row] >= 0) marked("--warn", row);
+    if (looking?.generation != null && looking.individual != null)
+      marked("--ink", (looking.generation - 1) * individuals.population + looking.individual);
     drawAxes(context, ranges, colour);
     for (const [at, axis] of AXES.entries()) {
       const brush = brushes[axis.id];
@@ -85,7 +122,7 @@ export function ParallelCoordinates() {
       context.fillRect(x(at) - 6, high, 12, Math.max(2, low - high));
       context.strokeRect(x(at) - 6, high, 12, Math.max(2, low - high));
     }
-  }, [individuals, brushes, mask, ranges, theme]);
+  }, [individuals, brushes, ranking, ranges, theme, pins, name, looking]);
 
   const shareUnder = (event: React.PointerEvent) => {
     const box = canvas.current!.getBoundingClientRect();
@@ -108,14 +145,14 @@ export function ParallelCoordinates() {
     const [least, most] = shares.map((share) => valueAt(axis, ranges[stroke.axis], share));
     setBrush(axis.id, [least, most]);
   };
-  const chosen = mask ? mask.reduce((sum, one) => sum + one, 0) : individuals.springs.length;
+  const chosen = ranking.rows.length;
   return (
     <div className="scatter">
       <canvas
         ref={canvas}
         style={{ width: WIDTH, height: HEIGHT, cursor: "ns-resize" }}
         role="img"
-        aria-label={`Parallel coordinates of ${individuals.springs.length} individuals, ${chosen} of them brushed`}
+        aria-label={`Parallel coordinates of ${individuals.springs.length} individuals, ${chosen} of them brushed, coloured by ${measureOf(sort).name.toLowerCase()}`}
         onPointerDown={down}
         onPointerMove={move}
         onPointerUp={() => setStroke(null)}

@@ -1,9 +1,11 @@
 // All individuals of a run by springs and force differential; the Pareto set stands out. A click looks at one.
 import { useEffect, useMemo, useRef, useState } from "react";
-import { maskOf } from "../document/choosing";
+import { measureOf, shareOfPlace } from "../document/choosing";
+import { pinnedRows, type Side, sideOfRow } from "../document/pins";
 import { paretoOf, placeOf } from "../document/run";
 import { inDigits } from "../document/scale";
-import { ask } from "../document/store";
+import { clickSide, IndividualMenu } from "./IndividualMenu";
+import { colourOfShade, shadeOf, useRanking } from "./Sorting";
 import { useStudio } from "./use";
 
 const HEIGHT = 190; // px
@@ -18,8 +20,12 @@ export function Scatter() {
   const individuals = useStudio((state) => state.individuals);
   const theme = useStudio((state) => state.theme);
   const looking = useStudio((state) => state.document?.looking ?? null);
-  const brushes = useStudio((state) => state.brushes);
-  const mask = useMemo(() => maskOf(individuals, brushes), [individuals, brushes]);
+  const ranking = useRanking();
+  const sort = useStudio((state) => state.sort);
+  const pins = useStudio((state) => state.pins);
+  const name = useStudio((state) => state.run?.state.name ?? "");
+  const [menu, setMenu] = useState<Side | null>(null);
+  const chosen = (row: number) => ranking.place[row] >= 0;
   const [over, setOver] = useState<number | null>(null);
   const front = useMemo(() => paretoOf(individuals), [individuals]);
   const frame = useMemo(() => frameOf(individuals), [individuals]);
@@ -46,10 +52,14 @@ export function Scatter() {
     const styles = getComputedStyle(document.documentElement);
     const colour = (name: string) => styles.getPropertyValue(name).trim();
     drawAxes(context, frame, width, colour("--line"), colour("--faint"));
-    context.fillStyle = colour("--faint");
-    context.globalAlpha = individuals.springs.length > 5000 ? 0.22 : 0.4;
-    for (let row = 0; row < individuals.springs.length; row++) {
-      if (mask && !mask[row]) continue;
+    context.globalAlpha = ranking.rows.length > 5000 ? 0.5 : 0.8;
+    let shade = -1;
+    // The first of the ranking are drawn last, so that they lie on top.
+    for (let place = ranking.rows.length - 1; place >= 0; place--) {
+      const row = ranking.rows[place];
+      const wanted = shadeOf(shareOfPlace(ranking, place));
+      if (wanted !== shade) context.fillStyle = colourOfShade(wanted, theme);
+      shade = wanted;
       const at = y(row);
       if (at >= EDGE.top - 1) context.fillRect(x(row) - 1, at - 1, 2, 2);
     }
@@ -62,15 +72,19 @@ export function Scatter() {
       else context.moveTo(x(row), y(row));
     });
     context.stroke();
-    for (const row of front) if (!mask || mask[row]) dot(context, x(row), y(row), 2.6);
+    for (const row of front) if (chosen(row)) dot(context, x(row), y(row), 2.6);
+    context.strokeStyle = colour("--warn");
+    context.lineWidth = 1.8;
+    for (const row of pinnedRows(individuals, pins, name))
+      if (chosen(row) && y(row) >= EDGE.top - 1) ring(context, x(row), y(row), 5);
     const at =
-      looking?.individual != null
+      looking?.generation != null && looking.individual != null
         ? (looking.generation - 1) * individuals.population + looking.individual
         : null;
     context.fillStyle = colour("--ink");
     for (const row of [at, over])
       if (row !== null && row < individuals.springs.length) dot(context, x(row), y(row), 4.5);
-  }, [individuals, front, frame, theme, over, looking, mask]);
+  }, [individuals, front, frame, theme, over, looking, ranking, pins, name]);
 
   const nearest = (event: React.MouseEvent): number | null => {
     const box = canvas.current!.getBoundingClientRect();
@@ -84,30 +98,38 @@ export function Scatter() {
         best = row;
       }
     };
-    for (let row = 0; row < individuals.springs.length; row++) if (!mask || mask[row]) look(row, 0);
-    for (const row of front) if (!mask || mask[row]) look(row, 3);
+    for (const row of ranking.rows) look(row, 0);
+    for (const row of front) if (chosen(row)) look(row, 3);
     return best;
   };
   const told = over === null ? null : placeOf(individuals, over);
   return (
     <div className="scatter">
-      <canvas
-        ref={canvas}
-        style={{ width, height: HEIGHT, cursor: over === null ? "default" : "pointer" }}
-        role="img"
-        aria-label={`${individuals.springs.length} individuals by springs and force differential, ${front.length} of them in the Pareto set`}
-        onPointerMove={(event) => setOver(nearest(event))}
-        onPointerLeave={() => setOver(null)}
-        onClick={(event) => {
+      <IndividualMenu
+        side={menu}
+        onOpen={setMenu}
+        sideUnder={(event) => {
           const row = nearest(event);
-          if (row !== null)
-            ask({ type: "look", ...placeOf(individuals, row) }, "Rebuilding the individual");
+          return row === null ? null : sideOfRow(individuals, row);
         }}
-      />
+      >
+        <canvas
+          ref={canvas}
+          style={{ width, height: HEIGHT, cursor: over === null ? "default" : "pointer" }}
+          role="img"
+          aria-label={`${ranking.rows.length} individuals by springs and force differential, coloured by ${measureOf(sort).name.toLowerCase()}, ${front.length} of all in the Pareto set`}
+          onPointerMove={(event) => setOver(nearest(event))}
+          onPointerLeave={() => setOver(null)}
+          onClick={(event) => {
+            const row = nearest(event);
+            if (row !== null) clickSide(event, sideOfRow(individuals, row));
+          }}
+        />
+      </IndividualMenu>
       <p className="explain">
         {told && over !== null
-          ? `Generation ${told.generation}, individual ${told.individual}: ${individuals.springs[over]} springs, ${inDigits(individuals.differential[over])}`
-          : "Springs against force differential. Click one to look at it."}
+          ? `Generation ${told.generation}, individual ${told.individual}: ${individuals.springs[over]} springs, ${inDigits(individuals.differential[over])}; rank ${(ranking.place[over] + 1).toLocaleString("en")} of ${ranking.rows.length.toLocaleString("en")}`
+          : "Springs against force differential. Click to look, right button for more."}
       </p>
     </div>
   );
@@ -180,6 +202,12 @@ function drawAxes(
       HEIGHT - EDGE.bottom + 7,
     );
   }
+}
+
+function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.stroke();
 }
 
 function dot(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {

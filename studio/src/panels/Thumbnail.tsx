@@ -1,41 +1,11 @@
 // A net at a glance, drawn flat: springs coloured by force, near ones over far ones.
-import { useEffect, useRef } from "react";
-import { type Motion, motionOf } from "../document/motion";
-import { applyNet, type Net } from "../document/net";
+import { memo, useEffect, useRef } from "react";
 import { tableOf } from "../document/palettes";
+import { type Pictured, wish } from "../document/pictured";
 import { placeOn, scaleOf } from "../document/scale";
-import { fetchPicture } from "../protocol/fetching";
 import { useStudio } from "./use";
 
-export interface Pictured {
-  net: Net;
-  motion: Motion;
-}
-
-const MOST_KEPT = 400;
-const known = new Map<string, Promise<Pictured>>();
-
-/** The net and the state at an address such as `/api/scenes/sheet/picture`; fetched once. */
-function pictured(path: string, revision: string): Promise<Pictured> {
-  const name = `${path} ${revision}`;
-  let found = known.get(name);
-  if (!found) {
-    found = fetchPicture(path).then(([net, motion]) => {
-      if (net.header.frame !== "net" || motion.header.frame !== "motion")
-        throw new Error("no picture");
-      return {
-        net: applyNet(null, net.header, net.arrays),
-        motion: motionOf(motion.header, motion.arrays),
-      };
-    });
-    known.set(name, found);
-    // The oldest are forgotten: a long run has more pictures than a window can hold.
-    if (known.size > MOST_KEPT) known.delete(known.keys().next().value!);
-  }
-  return found;
-}
-
-export function Thumbnail({
+export const Thumbnail = memo(function Thumbnail({
   path,
   revision = "",
   width,
@@ -50,21 +20,15 @@ export function Thumbnail({
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useStudio((state) => state.theme);
   const palette = useStudio((state) => state.view.colour.palette);
-  useEffect(() => {
-    let wanted = true;
-    pictured(path, revision).then(
-      (picture) =>
-        wanted &&
-        canvas.current &&
-        draw(canvas.current, picture, width, height, tableOf(palette, theme)),
-      () => known.delete(`${path} ${revision}`),
-    );
-    return () => {
-      wanted = false;
-    };
-  }, [path, revision, width, height, palette, theme]);
+  useEffect(
+    () =>
+      wish(path, revision, (picture) => {
+        if (canvas.current) draw(canvas.current, picture, width, height, tableOf(palette, theme));
+      }),
+    [path, revision, width, height, palette, theme],
+  );
   return <canvas ref={canvas} className="thumbnail" style={{ width, height }} />;
-}
+});
 
 /** Direction from which all thumbnails are seen: right, up and towards the eye, each of unit length. */
 const RIGHT = [0.85, 0.527, 0];

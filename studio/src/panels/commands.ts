@@ -1,8 +1,10 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
+import { isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
+import { CHOOSING_COMMANDS } from "./choosingCommands";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
@@ -13,6 +15,7 @@ export type Group =
   | "Cells"
   | "Selecting"
   | "Grafting"
+  | "Choosing"
   | "Springs and nodes"
   | "Tools"
   | "View"
@@ -81,7 +84,8 @@ export function move(what: "run" | "pause" | "step" | "reset"): void {
 export function seek(steps: number): void {
   const { document } = store.getState();
   const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
-  ask({ type: "seek_stress", steps, kind }, `Seeking stress, ${steps} steps`);
+  const orbit = grafting.getState().lock;
+  ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
 }
 
 const BAND = 0.1; // of the force, on each side
@@ -101,6 +105,7 @@ function selectSameForce(): void {
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
 export const COMMANDS: Command[] = [
+  ...CHOOSING_COMMANDS,
   ...GRAFT_COMMANDS,
   {
     id: "run",
@@ -165,7 +170,7 @@ export const COMMANDS: Command[] = [
     refused: needsSpring,
     run: () => {
       const nodes = store.getState().selection.keys[0].split(" ");
-      ask({ type: "edit_spring", what: "cut", nodes }, "Cutting");
+      ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
     },
   },
   {
@@ -399,6 +404,7 @@ export const COMMANDS: Command[] = [
     id: "drawing",
     label: "Export a drawing (SVG)",
     group: "Document",
+    refused: () => (isComparing() ? "close the comparison first" : null),
     run: ({ viewport }) => viewport && exportDrawing(viewport),
   },
   ...MODELS.map(({ name, label }) => ({

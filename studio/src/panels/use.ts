@@ -1,6 +1,7 @@
 // The store and the viewport for components.
 import { createContext, useContext, useEffect, useState } from "react";
 import { useStore } from "zustand";
+import { type Comparison, comparing } from "../document/comparing";
 import { type State, store } from "../document/store";
 import type { Hands } from "../tools/hands";
 import type { Viewport } from "../viewport/scene";
@@ -8,6 +9,11 @@ import type { Viewport } from "../viewport/scene";
 /** A part of the store; the component is drawn again when it changes. */
 export function useStudio<T>(part: (state: State) => T): T {
   return useStore(store, part);
+}
+
+/** A part of what is known of two nets side by side. */
+export function useComparing<T>(part: (state: Comparison) => T): T {
+  return useStore(comparing, part);
 }
 
 /** What draws the net, and what drives it; null until the canvas is there. */

@@ -23,6 +23,23 @@ export interface Listener {
   line(state: "open" | "lost" | "refused", problem?: string): void;
 }
 
+/** What the engine refused, and what is wrong with it. */
+export class Refused extends Error {
+  constructor(
+    problem: string,
+    /** What the problem is about, such as a parameter; null where that is not known. */
+    readonly key: string | null,
+  ) {
+    super(problem);
+  }
+
+  /** What is wrong, without what it is about. */
+  get words(): string {
+    const start = `${this.key}: `;
+    return this.message.startsWith(start) ? this.message.slice(start.length) : this.message;
+  }
+}
+
 const FIRST_WAIT = 250; // ms
 const LONGEST_WAIT = 4000; // ms
 
@@ -47,14 +64,14 @@ export class Connection {
     this.open();
   }
 
-  /** Asks for something and waits for the reply. Rejects with what the engine says is wrong. */
+  /** Asks for something and waits for the reply. Rejects with `Refused`: what the engine says is wrong. */
   async ask(request: Asking): Promise<Reply> {
     const id = ++this.number;
     const reply = await new Promise<Reply>((resolve) => {
       this.waiting.set(id, resolve);
       if (!this.send({ ...request, id } as Request)) this.fail(id);
     });
-    if (reply.problem !== null) throw new Error(reply.problem);
+    if (reply.problem !== null) throw new Refused(reply.problem, reply.key);
     return reply;
   }
 
@@ -76,7 +93,8 @@ export class Connection {
 
   private fail(id: number): void {
     const problem = "the engine does not answer; nothing was changed";
-    this.waiting.get(id)?.({ type: "reply", id, problem, cells: [], preview: null, answer: null });
+    const nothing = { key: null, cells: [], preview: null, answer: null };
+    this.waiting.get(id)?.({ type: "reply", id, problem, ...nothing });
     this.waiting.delete(id);
   }
 

@@ -1,7 +1,17 @@
 // What is fetched rather than streamed: scenes, documents and their pictures.
 import { engineAddress } from "./address";
 import { decodeFrame, type Frame } from "./frames";
-import type { Brushes, Clusters, Lineage, Opened, Opening, Refusal, Shelf } from "./messages";
+import type {
+  Brushes,
+  Clusters,
+  Compared,
+  Comparing,
+  Lineage,
+  Opened,
+  Opening,
+  Refusal,
+  Shelf,
+} from "./messages";
 
 async function answer(path: string, options: RequestInit = {}, query = ""): Promise<Response> {
   let response: Response;
@@ -47,6 +57,13 @@ export async function fetchClusters(document: string, brushes: Brushes): Promise
   const body = JSON.stringify(brushes);
   const path = `/api/documents/${document}/run/clusters`;
   return (await answer(path, { method: "POST", body })).json() as Promise<Clusters>;
+}
+
+/** Two nets, compared. */
+export async function fetchCompared(document: string, comparing: Comparing): Promise<Compared> {
+  const body = JSON.stringify(comparing);
+  const path = `/api/documents/${document}/compare`;
+  return (await answer(path, { method: "POST", body })).json() as Promise<Compared>;
 }
 
 /** Where a parent, or an individual, came from. */

@@ -25,6 +25,8 @@ export interface Protocol {
     | Look
     | Follow
     | Reinstate
+    | Pin
+    | Unpin
     | LiveEvolve
     | WeighCells
     | SelectCells
@@ -38,7 +40,7 @@ export interface Protocol {
     | Hold
     | Release
     | Received;
-  event: DocumentState | RunState | LiveState | Patches | Welcome | Reply | Problem;
+  event: DocumentState | RunState | Pins | LiveState | Patches | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
   opening: Opening;
@@ -47,6 +49,8 @@ export interface Protocol {
   lineage: Lineage;
   brushes: Brushes;
   clusters: Clusters;
+  comparing: Comparing;
+  compared: Compared;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -81,6 +85,10 @@ export interface EditSpring {
    * @maxItems 2
    */
   nodes: string[];
+  /**
+   * Whether the images under the framework's symmetries are cut or added too.
+   */
+  orbit: boolean;
 }
 /**
  * Hold an anchor somewhere else.
@@ -124,6 +132,10 @@ export interface SeekStress {
   id: number;
   steps: number;
   kind: string;
+  /**
+   * Whether a step subdivides all images of the cell under the framework's symmetries.
+   */
+  orbit: boolean;
 }
 /**
  * Change a value of the design file.
@@ -278,6 +290,10 @@ export interface Look {
    * None: the parent that the generation chose.
    */
   individual: number | null;
+  /**
+   * What is pinned, instead of a generation.
+   */
+  pin: number | null;
 }
 /**
  * Show the parent of the newest generation for as long as the run goes on, or no longer.
@@ -295,12 +311,37 @@ export interface Reinstate {
   id: number;
 }
 /**
+ * Pin a net, so that it is at hand whatever becomes of its run.
+ */
+export interface Pin {
+  type: "pin";
+  id: number;
+  /**
+   * None: what is shown.
+   */
+  side: string | null;
+}
+/**
+ * Let a pinned net go.
+ */
+export interface Unpin {
+  type: "unpin";
+  id: number;
+  pin: number;
+}
+/**
  * Let the net evolve before one's eyes, steer it, and keep or discard what it grew.
  */
 export interface LiveEvolve {
   type: "live_evolve";
   id: number;
-  what: "start" | "pause" | "continue" | "change" | "keep" | "discard";
+  /**
+   * `change` and `defaults` are for parameters, whether something evolves or not.
+   */
+  what: "start" | "pause" | "continue" | "change" | "defaults" | "keep" | "discard";
+  /**
+   * Of `start` and `change`; others stay as they are.
+   */
   parameters: {
     [k: string]: unknown;
   };
@@ -413,7 +454,7 @@ export interface PlanGraft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell.
+   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -439,7 +480,7 @@ export interface Graft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell.
+   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -536,6 +577,27 @@ export interface HistoryLine {
    * Actions done once this one is, from 1.
    */
   number: number;
+  /**
+   * Where the net was taken from, if it was taken over as a whole.
+   */
+  origin: Place | null;
+}
+/**
+ * Where a net comes from: a parent or an individual of a run.
+ */
+export interface Place {
+  /**
+   * Folder of the run: within the document's folder, such as ``runs/0001``, or absolute.
+   */
+  run: string;
+  /**
+   * 0 is the start.
+   */
+  generation: number;
+  /**
+   * None: the parent for the next generation.
+   */
+  individual: number | null;
 }
 /**
  * Measures of the net at equilibrium.
@@ -599,11 +661,22 @@ export interface SpringGroupLine {
   says: string;
 }
 /**
- * A parent or an individual that is shown instead of the design.
+ * A parent, an individual or something pinned that is shown instead of the design.
  */
 export interface Looked {
-  generation: number;
+  /**
+   * Such as ``Generation 34, individual 2``.
+   */
+  label: string;
+  /**
+   * In the document's run; None: it is pinned, and of no run or of an earlier one.
+   */
+  generation: number | null;
   individual: number | null;
+  /**
+   * Of what is in no generation of the run.
+   */
+  pin: number | null;
 }
 /**
  * The run of the document.
@@ -613,6 +686,10 @@ export interface RunState {
   status: "none" | "running" | "paused" | "ended" | "failed";
   reason: string;
   folder: string;
+  /**
+   * The folder as pins and the history name it.
+   */
+  name: string;
   /**
    * Another process that drives it; empty: this studio does, or nobody.
    */
@@ -659,11 +736,40 @@ export interface GenerationRow {
   changed: boolean;
 }
 /**
+ * What is pinned, in the order in which it was.
+ */
+export interface Pins {
+  type: "pins";
+  pins: PinState[];
+}
+/**
+ * A pinned net.
+ */
+export interface PinState {
+  number: number;
+  /**
+   * Such as ``Generation 34, individual 2``.
+   */
+  label: string;
+  /**
+   * None: it was the design, after actions of its own.
+   */
+  place: Place | null;
+  /**
+   * Spring utilization factor in its run; None if it is undefined.
+   */
+  suf: number | null;
+  figures: Figures;
+}
+/**
  * Live evolution, and the cells that were brushed.
  */
 export interface LiveState {
   type: "live";
   status: "none" | "running" | "paused" | "failed";
+  /**
+   * Why it failed or stands still; empty: because it was told to.
+   */
   reason: string;
   generation: number;
   /**
@@ -677,6 +783,10 @@ export interface LiveState {
   parameters: {
     [k: string]: unknown;
   };
+  /**
+   * Names of the parameters that a person changed.
+   */
+  changed: string[];
   /**
    * Factors by address of cells.
    */
@@ -764,6 +874,10 @@ export interface Reply {
    */
   problem: string | null;
   /**
+   * What the problem is about, such as a parameter, where that is known.
+   */
+  key: string | null;
+  /**
    * Cells that the action made or changed.
    */
   cells: string[];
@@ -848,6 +962,10 @@ export interface GraftPlan {
    * Springs of these cells [m].
    */
   springs: number[];
+  /**
+   * Steps of rotation after which it lies as at first; 1: it lies whole in one way only.
+   */
+  turns: number;
   before: GraftFigures | null;
   after: GraftFigures | null;
 }
@@ -1059,4 +1177,59 @@ export interface Cluster {
   generation: number;
   individual: number;
   size: number;
+}
+/**
+ * Ask for two nets, compared.
+ */
+export interface Comparing {
+  first: string;
+  second: string;
+}
+/**
+ * Two nets, compared.
+ */
+export interface Compared {
+  first: ComparedNet;
+  second: ComparedNet;
+  /**
+   * Top-level cells whose subtrees differ; None on different frameworks.
+   */
+  changed: number | null;
+  types: ComparedCount[];
+  reactions: ComparedReaction[];
+}
+/**
+ * One of two nets at equilibrium.
+ */
+export interface ComparedNet {
+  label: string;
+  figures: Figures;
+  /**
+   * Standard deviation of the forces [N].
+   */
+  force_deviation: number;
+  /**
+   * Sum of force times length [N m].
+   */
+  load_path: number;
+  /**
+   * Of all anchors [N].
+   */
+  largest_reaction: number;
+}
+/**
+ * Expressed cells of a type.
+ */
+export interface ComparedCount {
+  name: string;
+  first: number;
+  second: number;
+}
+/**
+ * What holds an anchor [N]; None where a net does not have it.
+ */
+export interface ComparedReaction {
+  anchor: string;
+  first: number | null;
+  second: number | null;
 }

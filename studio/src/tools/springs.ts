@@ -1,5 +1,6 @@
 // Cut takes away the spring that is clicked; Add ties one between two nodes that are clicked in turn.
 import * as THREE from "three";
+import { grafting } from "../document/grafting";
 import { positionOf } from "../document/motion";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
@@ -23,7 +24,7 @@ export class Cutting implements Tool {
     const { net } = store.getState();
     if (hit?.kind !== "spring" || !net) return;
     const nodes = [net.nodes[net.ends[2 * hit.row]], net.nodes[net.ends[2 * hit.row + 1]]];
-    ask({ type: "edit_spring", what: "cut", nodes }, "Cutting");
+    ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
   }
 }
 
@@ -51,7 +52,11 @@ export class Adding implements Tool {
       if (this.first === null) this.cancel(viewport);
       return;
     }
-    ask({ type: "edit_spring", what: "add", nodes: [this.first, key] }, "Adding a spring");
+    const nodes = [this.first, key];
+    ask(
+      { type: "edit_spring", what: "add", nodes, orbit: grafting.getState().lock },
+      "Adding a spring",
+    );
     this.cancel(viewport);
   }
 

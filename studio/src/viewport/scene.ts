@@ -1,12 +1,12 @@
 // The viewport: what the document holds and how it is to be seen, drawn on a canvas when either changes.
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
+import { type Comparison, comparing, isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
 import { type Motion, positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
 import { type Colour, kindColour } from "../document/palettes";
-import { plainType, quantityOf } from "../document/quantities";
-import { placeOn, scaleOf } from "../document/scale";
+import { plainType } from "../document/quantities";
 import { type Cut, clipped, cutOf, keeps, type Lines } from "../document/section";
 import { selectedRows } from "../document/selection";
 import { type State, store } from "../document/store";
@@ -15,6 +15,8 @@ import { arrowsOf } from "./arrows";
 import { Eye, type StandardView } from "./camera";
 import { type Axis, armedNode, armLength, armUnder, type Guide, guideLines } from "./guides";
 import { Hairlines } from "./hairlines";
+import { endsOf, STILL_RIBBONS, WIDTH, widthsOf } from "./lines";
+import { bothPositions, Pair } from "./pair";
 import { type Hit, Projection, pick } from "./picking";
 import { type Disc, Discs } from "./points";
 import { Ribbons } from "./ribbons";
@@ -33,14 +35,7 @@ const GOING: Record<State["theme"], Colour> = { dark: [255, 77, 79], light: [214
 
 const GHOST: Record<State["theme"], Colour> = { dark: [86, 214, 170], light: [10, 122, 84] };
 
-/** Widths of springs [px]. */
-const WIDTH = 1.6;
-const THINNEST = 0.7;
-const THICKEST = 5;
-const SELECTED_WIDTH = 3.4;
-
-/** Springs that a software rasteriser draws as ribbons once nothing moves. */
-const STILL_RIBBONS = 12_000;
+const SELECTED_WIDTH = 3.4; // px
 const STILL_AFTER = 180; // ms
 
 /** Length of the longest reaction arrow over the radius of the net. */
@@ -75,6 +70,7 @@ export class Viewport {
   private readonly skin = new Skin(0.16);
   private readonly markedSkin = new Skin(0.34);
   private readonly discs = new Discs();
+  private readonly pair = new Pair();
   private readonly ground = new THREE.Color();
   private width = 1;
   private height = 1;
@@ -82,6 +78,7 @@ export class Viewport {
   private lastMove = 0;
   private stillTimer = 0;
   private fitted: string | null = null;
+  private paired = false;
   private drawnRevision = 0;
   private dirty = true;
   private projection: Projection | null = null;
@@ -111,6 +108,7 @@ export class Viewport {
     const stops = [
       store.subscribe((state, before) => this.follow(state, before)),
       grafting.subscribe(({ plan }, before) => plan !== before.plan && this.redraw(true)),
+      comparing.subscribe((state, before) => this.followPair(state, before)),
     ];
     this.stop = () => {
       for (const stop of stops) stop();
@@ -132,8 +130,11 @@ export class Viewport {
   /** Looks at the whole net. */
   fit(view: StandardView | null = null): void {
     const { motion } = store.getState();
-    if (!motion) return;
-    this.eye.measure(motion.positions);
+    const positions = isComparing()
+      ? bothPositions(comparing.getState().nets)
+      : (motion?.positions ?? null);
+    if (!positions) return;
+    this.eye.measure(positions);
     this.eye.fit(view, true);
     this.redraw();
   }
@@ -141,14 +142,10 @@ export class Viewport {
   /** What lies under a point of the canvas [px]. */
   pick(x: number, y: number, kinds: Parameters<typeof pick>[4]): Hit | null {
     const { net, motion, view } = store.getState();
-    if (!net || !motion) return null;
-    this.projection ??= new Projection(
-      motion,
-      this.eye.camera,
-      this.width,
-      this.height,
-      cutOf(view.section, motion.positions),
-    );
+    if (!net || !motion || isComparing()) return null;
+    const { section } = view;
+    const look = { motion, camera: this.eye.camera, width: this.width, height: this.height, section };
+    if (!this.projection?.holds(look)) this.projection = new Projection(look);
     return pick(net, this.projection, x, y, kinds);
   }
 
@@ -232,6 +229,7 @@ export class Viewport {
       this.skin,
       this.markedSkin,
       this.discs,
+      this.pair,
     ]) {
       part.dispose();
     }
@@ -262,13 +260,32 @@ export class Viewport {
     if (!before || seen.some((key) => state[key] !== before[key])) this.redraw(true);
   }
 
+  /** Makes room for a pair of nets, and looks at both once they are there. */
+  private followPair(state: Comparison, before: Comparison): void {
+    if ((state.sides === null) !== (before.sides === null)) this.resize();
+    const came = bothPositions(state.nets);
+    if (state.sides && came && !bothPositions(before.nets)) {
+      this.eye.measure(came);
+      // Two nets that are exchanged are seen as the ones before were.
+      if (!this.paired) this.eye.fit(null, false);
+      this.paired = true;
+    }
+    if (!state.sides && this.paired) {
+      this.paired = false;
+      this.fit();
+    }
+    this.redraw(true);
+  }
+
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas.parentElement!;
     this.width = Math.max(1, clientWidth);
     this.height = Math.max(1, clientHeight);
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(this.width, this.height, false);
-    this.eye.resize(this.width, this.height);
+    const both = isComparing();
+    this.eye.resize(both ? this.width / 2 : this.width, this.height);
+    this.eye.controls.zoomToCursor = !both;
     this.redraw(true);
   }
 
@@ -291,7 +308,6 @@ export class Viewport {
   private render(fine: boolean): void {
     const state = store.getState();
     const { net, motion, theme } = state;
-    this.projection = null;
     this.ground.set(GROUND[theme]);
     this.renderer.setClearColor(this.ground);
     const haze = this.eye.haze();
@@ -300,6 +316,13 @@ export class Viewport {
     // A hairline has no width to be thinned by distance, so the haze is weaker.
     fog.near = haze.x;
     fog.far = haze.y + 0.6 * (haze.y - haze.x);
+    if (isComparing()) {
+      if (this.dirty) this.pair.set(comparing.getState().nets, state, ANCHOR[theme]);
+      this.dirty = false;
+      const quality = { fine, software: this.software };
+      this.pair.draw(this.renderer, this.eye, [this.width, this.height], this.ground, quality);
+      return;
+    }
     const scale = this.renderer.getPixelRatio();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     const every = [this.ribbons, this.marked, this.arrows, this.ghost, this.guides, this.patch];
@@ -325,7 +348,7 @@ export class Viewport {
     const lines = this.lines(net, motion, cutOf(view.section, motion.positions));
     this.ribbons.set(lines.count, lines.ends, lines.colours, lines.widths);
     this.hairlines.set(lines.count, lines.ends, lines.colours);
-    this.updateMarks(state, net, endsOf(net, motion.positions));
+    this.updateMarks(state, net, motion);
     this.updateSkin(state, net, motion);
     this.updatePatch(theme);
     this.discs.set(discsOf(state, net, motion));
@@ -340,11 +363,7 @@ export class Viewport {
     return clipped(cut, { count, ends: endsOf(net, motion.positions), colours, widths });
   }
 
-  private updateMarks(
-    { selection, hover, theme, motion }: State,
-    net: Net,
-    ends: Float32Array,
-  ): void {
+  private updateMarks({ selection, hover, theme, view }: State, net: Net, motion: Motion): void {
     const springs = new Set(selectedRows(net, selection, "springs"));
     for (const cell of selectedRows(net, selection, "cells")) {
       for (const spring of groupOf(net.own, cell)) springs.add(spring);
@@ -352,7 +371,8 @@ export class Viewport {
     const chosen = [...springs];
     const lit = hover?.kind === "spring" && !springs.has(hover.row) ? hover.row : -1;
     if (lit >= 0) chosen.push(lit);
-    const count = chosen.length + (this.rubber && motion ? 1 : 0);
+    const count = chosen.length + (this.rubber ? 1 : 0);
+    const ends = endsOf(net, motion.positions);
     const places = new Float32Array(6 * count);
     const colours = new Uint8Array(3 * count);
     const widths = new Float32Array(count);
@@ -362,12 +382,14 @@ export class Viewport {
       widths[at] =
         spring === lit ? SELECTED_WIDTH + 0.6 : selection.kind === "springs" ? SELECTED_WIDTH : 2.2;
     });
-    if (this.rubber && motion) {
+    if (this.rubber) {
       places.set([...this.rubber.from, ...this.rubber.to], 6 * chosen.length);
       colours.set(MARK[theme], 3 * chosen.length);
       widths[chosen.length] = 2.4;
     }
-    this.marked.set(count, places, colours, widths);
+    const cut = cutOf(view.section, motion.positions);
+    const marks = clipped(cut, { count, ends: places, colours, widths });
+    this.marked.set(marks.count, marks.ends, marks.colours, marks.widths);
   }
 
   /** Draws the cells that the patch in the hand would become, over the net. */
@@ -454,26 +476,6 @@ function isSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): bo
   const info = context.getExtension("WEBGL_debug_renderer_info");
   const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
   return /swiftshader|llvmpipe|software/i.test(name);
-}
-
-function endsOf(net: Net, positions: Float32Array): Float32Array {
-  const ends = new Float32Array(3 * net.ends.length);
-  for (let end = 0; end < net.ends.length; end++) {
-    const node = 3 * net.ends[end];
-    ends[3 * end] = positions[node];
-    ends[3 * end + 1] = positions[node + 1];
-    ends[3 * end + 2] = positions[node + 2];
-  }
-  return ends;
-}
-
-/** Widths by what springs are coloured by; by force where that is no number. */
-function widthsOf(net: Net, motion: Motion, by: State["view"]["colour"]): Float32Array {
-  const values = (quantityOf(by.by) ?? quantityOf("force")!).values(net, motion);
-  const scale = scaleOf(values, by);
-  return values.map((value) =>
-    Number.isFinite(value) ? THINNEST + (THICKEST - THINNEST) * placeOn(scale, value) : THINNEST,
-  );
 }
 
 function discsOf({ view, selection, hover, theme, motion }: State, net: Net, _: unknown): Disc[] {

@@ -1,0 +1,86 @@
+// Commands of choosing among individuals: pins, comparisons, and the sort key that all pictures share.
+import { MEASURES } from "../document/choosing";
+import { compare, isComparing, likelySides, stopComparing, swapSides } from "../document/comparing";
+import { shownSide, togglePin } from "../document/pins";
+import { type State, store } from "../document/store";
+import type { Command } from "./commands";
+import { sortBy, turnSort } from "./Sorting";
+
+const needsRun = ({ run }: State) =>
+  run && run.state.status !== "none" ? null : "there is no run";
+
+export const CHOOSING_COMMANDS: Command[] = [
+  {
+    id: "compare-close",
+    label: "Close the comparison",
+    group: "Choosing",
+    keys: "Escape",
+    when: isComparing,
+    refused: () => (isComparing() ? null : "nothing is compared"),
+    run: stopComparing,
+  },
+  {
+    id: "compare-swap",
+    label: "Swap the two nets that are compared",
+    group: "Choosing",
+    keys: "S",
+    when: isComparing,
+    refused: () => (isComparing() ? null : "nothing is compared"),
+    run: swapSides,
+  },
+  {
+    id: "pin",
+    label: "Pin what is shown, or unpin it",
+    group: "Choosing",
+    keys: "P",
+    run: () => togglePin(shownSide(store.getState().document)),
+  },
+  {
+    id: "compare",
+    label: "Compare two nets side by side",
+    group: "Choosing",
+    keys: "Shift+P",
+    refused: () => (likelySides() ? null : "look at an individual, mark two, or pin one first"),
+    run: () => {
+      const sides = likelySides();
+      if (sides) compare(...sides);
+    },
+  },
+  {
+    id: "gallery",
+    label: "Show or hide the pictures of individuals",
+    group: "Choosing",
+    keys: "U",
+    refused: needsRun,
+    run: () => store.setState(({ gallery }) => ({ gallery: !gallery })),
+  },
+  {
+    id: "ranking",
+    label: "Pictures: a row a generation, or one ranking",
+    group: "Choosing",
+    refused: needsRun,
+    run: () =>
+      store.setState(({ sort }) => ({ sort: { ...sort, byGeneration: !sort.byGeneration } })),
+  },
+  {
+    id: "pinned-only",
+    label: "Pictures: what is pinned only, or all",
+    group: "Choosing",
+    refused: needsRun,
+    run: () => store.setState(({ pinnedOnly }) => ({ pinnedOnly: !pinnedOnly })),
+  },
+  {
+    id: "sort-turn",
+    label: "Sort individuals the other way round",
+    group: "Choosing",
+    refused: needsRun,
+    run: turnSort,
+  },
+  ...MEASURES.map(({ id, name }) => ({
+    id: `sort-${id}`,
+    label: `Sort individuals by ${name.toLowerCase()}`,
+    group: "Choosing" as const,
+    refused: needsRun,
+    run: () => sortBy(id),
+  })),
+];
