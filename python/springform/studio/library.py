@@ -6,6 +6,7 @@ import hashlib
 import os
 import re
 import secrets
+import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from ..files import WriteError, explain
 from ..run import open_run
 from ..run_format import is_run
 from . import journal
+from .telling import picture_of
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,27 @@ class Library:
             if entry.file == file:
                 return entry.id
         return self._create(design, file)
+
+    def remove(self, document: str) -> None:
+        """Remove a document for good; its design file stays. Raises `InputError`, `WriteError`.
+
+        `InputError`: there is none, or another studio has it open.
+        """
+        folder = self.folder(document)
+        with journal.reopen(folder):
+            pass
+        # Its name goes first: a folder that is half gone must not pass for a document.
+        gone = self.home / f".{document}.removed"
+        try:
+            folder.rename(gone)
+            shutil.rmtree(gone)
+        except OSError as error:
+            raise WriteError(f"can't be removed: {explain(error)}", file=folder) from None
+
+    def picture(self, document: str) -> bytes:
+        """Return the net of a document at equilibrium, as `telling.picture_of` writes it."""
+        found, _, _ = journal.read(self.folder(document))
+        return picture_of(found.design)
 
     def _create(self, design: Design, file: str | None, run: str | None = None) -> str:
         words = re.sub(r"[^a-z0-9]+", "-", design.name.lower()).strip("-")[:40] or "net"

@@ -47,6 +47,7 @@ from .run_messages import (
     RunState,
     SteerRun,
 )
+from .shelf_messages import Folder, Opened, Opening, Shelf
 
 # --- requests: from a window to the engine --------------------------------------------------------
 
@@ -165,6 +166,13 @@ class Save(_Message):
     """Whether another file that exists is replaced."""
 
 
+class Revert(_Message):
+    """Put back what the document's file holds; an action like any other."""
+
+    type: Literal["revert"] = "revert"
+    id: int
+
+
 class Move(_Message):
     """Let the net move, stop it, make one step, or put it back to where it was drawn."""
 
@@ -208,6 +216,7 @@ Request = Annotated[
     | Undo
     | Travel
     | Save
+    | Revert
     | Move
     | Evolve
     | SteerRun
@@ -361,43 +370,6 @@ Event = Annotated[
 # --- what is fetched ------------------------------------------------------------------------------
 
 
-class SceneEntry(_Message):
-    """A packaged scene."""
-
-    name: str
-    description: str
-
-
-class DocumentEntry(_Message):
-    """A document that was worked on before."""
-
-    id: str
-    name: str
-    file: str | None
-    changed: float
-    """Seconds since 1970."""
-    open: bool
-
-
-class Shelf(_Message):
-    """What can be opened."""
-
-    scenes: list[SceneEntry]
-    documents: list[DocumentEntry]
-
-
-class Opening(_Message):
-    """Ask for a new document from a scene or a design file."""
-
-    source: Annotated[str, Field(min_length=1, max_length=4000)]
-
-
-class Opened(_Message):
-    """The document that was opened."""
-
-    id: str
-
-
 class Refusal(_Message):
     """Why something that was fetched is refused."""
 
@@ -411,6 +383,7 @@ class Protocol(_Message):
     event: Event
     frame: Frame
     shelf: Shelf
+    folder: Folder
     opening: Opening
     opened: Opened
     refusal: Refusal

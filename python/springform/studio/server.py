@@ -27,11 +27,13 @@ from ..design import load
 from ..errors import InputError
 from .address import Address, keep_address, last_address
 from .exports import export
+from .folders import folder_at
 from .library import Library
-from .messages import DocumentEntry, Opened, Opening, Refusal, SceneEntry, Shelf
+from .messages import Refusal
 from .pin_messages import Comparing, Side
 from .run_messages import Brushes
 from .session import Session
+from .shelf_messages import DocumentEntry, Folder, Opened, Opening, SceneEntry, Shelf
 from .telling import picture_of
 
 HOST = "127.0.0.1"
@@ -53,7 +55,7 @@ _POLICY = (
 
 _WRONG_ADDRESS = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>springFORM</title>
-<body style="font: 16px/1.6 system-ui, sans-serif; max-width: 34em; margin: 18vh auto; padding: 0 2em">
+<body style="font: 16px/1.6 sans-serif; max-width: 34em; margin: 18vh auto; padding: 0 2em">
 <h1 style="font-size: 1.3em">This address is not the studio's</h1>
 <p>Open the address that <code>springform studio</code> printed when it was started, with its
 token. Your documents are kept: nothing is lost.</p>
@@ -75,6 +77,17 @@ class Studio:
             if document not in self._sessions:
                 self._sessions[document] = Session(self.library.folder(document))
             return self._sessions[document]
+
+    async def remove(self, document: str) -> None:
+        """Remove a document for good. Raises `InputError`: there is none, or a window shows it."""
+        folder = self.library.folder(document)
+        async with self._opening:
+            if (session := self._sessions.get(document)) is not None:
+                if session.is_looked_at:
+                    raise InputError("is open in a window; close it first", key=document)
+                del self._sessions[document]
+                await session.close()
+            await asyncio.to_thread(self.library.remove, folder.name)
 
     def is_open(self, document: str) -> bool:
         """Whether a document has a session."""
@@ -106,8 +119,11 @@ def application(library: Library, token: str, port: int) -> Starlette:
         routes=[
             Route("/", _page),
             Route("/api/shelf", _answering(_shelf)),
+            Route("/api/folder", _answering(_folder)),
             Route("/api/documents", _answering(_open), methods=["POST"]),
             Route("/api/documents/{document}", _answering(_document)),
+            Route("/api/documents/{document}", _answering(_remove), methods=["DELETE"]),
+            Route("/api/documents/{document}/picture", _answering(_document_picture)),
             Route("/api/documents/{document}/run", _answering(_table)),
             Route("/api/documents/{document}/export/{name}", _answering(_export)),
             Route("/api/documents/{document}/net/{side:path}", _answering(_net)),
@@ -288,6 +304,23 @@ async def _shelf(request: Request) -> Shelf:
     )
 
 
+async def _folder(request: Request) -> Folder:
+    return await asyncio.to_thread(folder_at, request.query_params.get("path", ""))
+
+
+async def _remove(request: Request) -> Response:
+    studio: Studio = request.app.state.studio
+    await studio.remove(request.path_params["document"])
+    return Response(status_code=204)
+
+
+async def _document_picture(request: Request) -> Response:
+    studio: Studio = request.app.state.studio
+    document = request.path_params["document"]
+    picture = await asyncio.to_thread(studio.library.picture, document)
+    return Response(picture, media_type="application/octet-stream")
+
+
 async def _open(request: Request) -> Opened:
     studio: Studio = request.app.state.studio
     try:
@@ -295,8 +328,8 @@ async def _open(request: Request) -> Opened:
     except ValidationError:
         raise InputError("must be a source", key="body") from None
     document = await asyncio.to_thread(studio.library.open, asked.source)
-    await studio.session(document)
-    return Opened(id=document)
+    session = await studio.session(document)
+    return Opened(id=document, went_on=session.belongs_to_file and not session.is_saved)
 
 
 async def _document(request: Request) -> BaseModel:

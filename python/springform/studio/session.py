@@ -14,11 +14,10 @@ from pydantic import BaseModel, ValidationError
 
 from .. import _core
 from ..arrays import Floats
-from ..design import Design, load, save
-from ..design_schema import DesignFile
+from ..design import Design
 from ..errors import InputError, SpringformError
 from ..patch_file import Origin
-from . import commands, grafts, journal, orbits
+from . import commands, grafts, journal, orbits, own_file
 from .changes import Action
 from .document import Document
 from .document_telling import document_state
@@ -34,7 +33,6 @@ from .graft_messages import (
     RenamePatch,
     SelectCells,
 )
-from .library import file_hash
 from .live import Grown
 from .live_messages import LiveEvolve, WeighCells
 from .live_stage import LiveStage
@@ -52,6 +50,7 @@ from .messages import (
     Release,
     Reply,
     Request,
+    Revert,
     Save,
     Travel,
     Undo,
@@ -104,7 +103,7 @@ class Session:
         self._nets: dict[int, tuple[Design, Tables]] = {}
         self._state: State | None = None
         self._state_frame: bytes = b""
-        self._saved = self._read_file()
+        self._saved = own_file.taken_over(self._journal)
         self._live = LiveStage(
             self._journal.folder, lambda: self.design, self._tell_all, self._show_grown
         )
@@ -268,8 +267,8 @@ class Session:
                 await self._follow(request.on)
             case Reinstate():
                 await self._reinstate()
-            case Save():
-                await self._in_thread(lambda: self._save(request))
+            case Save() | Revert():
+                await self._use_file(request)
             case Undo() | Travel():
                 await self._travel(self._goal(request))
             case Graft():
@@ -342,35 +341,23 @@ class Session:
     async def _in_thread(self, work: Callable[[], T]) -> T:
         return await self._loop.run_in_executor(self._worker, work)
 
-    def _save(self, request: Save) -> None:
-        settings = self._journal.settings
-        path = request.path or settings.file
-        if path is None:
-            raise InputError("the document has no file yet; say where to save it", key="path")
-        target = Path(path).expanduser()
-        if not target.is_absolute():
-            target = Path.cwd() / target
-        own = settings.file is not None and target == Path(settings.file)
-        if target.exists() and not (own or request.replace):
-            raise InputError("exists; choose another name or allow to replace it", file=target)
-        save(self.design, target)
-        self._journal.belong_to(str(target), file_hash(target))
+    async def _use_file(self, request: Save | Revert) -> None:
+        if isinstance(request, Revert):
+            await self._revert()
+            return
+        # Nothing is done to the design while something else is shown.
+        shown = self._looking is None and self._live.live is None
+        done = own_file.saving(self._journal, request, naming=shown)
+        await self._in_thread(lambda: own_file.write(self._journal, done))
+        if (action := done.action) is not None:
+            await self.act(lambda: (action, []))
         self._saved = self.design.to_file()
 
-    def _read_file(self) -> DesignFile | None:
-        """Return what the document's file holds; take it over if it was changed elsewhere."""
-        settings = self._journal.settings
-        if settings.file is None or (now := file_hash(settings.file)) is None:
-            return None
-        try:
-            held = load(settings.file).closed
-        except InputError:
-            return None
-        if now != settings.saved:
-            label = f"Read {Path(settings.file).name}, changed elsewhere"
-            self._journal.do(commands.whole(self.design, held, label))
-            self._journal.belong_to(settings.file, now)
-        return held.to_file()
+    async def _revert(self) -> None:
+        design = await self._in_thread(lambda: own_file.held(self._journal.settings))
+        label = f"Go back to {Path(self._journal.settings.file or '').name}"
+        await self.act(lambda: (commands.whole(self.design, design, label), []))
+        self._saved = design.to_file()
 
     # --- live evolution ------------------------------------------------------------------------
 
@@ -529,12 +516,27 @@ class Session:
         async with self._order:
             return self._document_state()
 
+    @property
+    def is_saved(self) -> bool:
+        """Whether the document's file holds the design as it is now."""
+        return self._saved is not None and self._saved == self.design.to_file()
+
+    @property
+    def belongs_to_file(self) -> bool:
+        """Whether the document has a file of its own."""
+        return self._journal.settings.file is not None
+
+    @property
+    def is_looked_at(self) -> bool:
+        """Whether a window is open on it."""
+        return bool(self._windows)
+
     def _document_state(self) -> DocumentState:
         document, looked = self._journal.document, self._looking
         return document_state(
             self._journal,
             self.shown,
-            saved=self._saved is not None and self._saved == self.design.to_file(),
+            saved=self.is_saved,
             revision=self._revision,
             figures=self._figures[document.position] if looked is None else looked.figures,
             before=self._figures.get(document.position - 1) if looked is None else None,

@@ -19,6 +19,7 @@ export interface Protocol {
     | Undo
     | Travel
     | Save
+    | Revert
     | Move
     | Evolve
     | SteerRun
@@ -43,6 +44,7 @@ export interface Protocol {
   event: DocumentState | RunState | Pins | LiveState | Patches | Welcome | Reply | Problem;
   frame: NetHeader | MotionHeader | TableHeader;
   shelf: Shelf;
+  folder: Folder;
   opening: Opening;
   opened: Opened;
   refusal: Refusal;
@@ -242,6 +244,13 @@ export interface Save {
    * Whether another file that exists is replaced.
    */
   replace: boolean;
+}
+/**
+ * Put back what the document's file holds; an action like any other.
+ */
+export interface Revert {
+  type: "revert";
+  id: number;
 }
 /**
  * Let the net move, stop it, make one step, or put it back to where it was drawn.
@@ -1108,6 +1117,21 @@ export interface DocumentEntry {
   open: boolean;
 }
 /**
+ * A folder of this machine, as far as the studio can open what is in it.
+ */
+export interface Folder {
+  path: string;
+  parent: string | null;
+  entries: FolderEntry[];
+}
+/**
+ * What can be opened or entered in a folder.
+ */
+export interface FolderEntry {
+  name: string;
+  kind: "folder" | "design" | "run";
+}
+/**
  * Ask for a new document from a scene or a design file.
  */
 export interface Opening {
@@ -1118,6 +1142,10 @@ export interface Opening {
  */
 export interface Opened {
   id: string;
+  /**
+   * Whether it is a file's document, with changes since it was saved.
+   */
+  went_on: boolean;
 }
 /**
  * Why something that was fetched is refused.
