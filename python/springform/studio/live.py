@@ -27,13 +27,18 @@ Status = Literal["running", "paused", "failed"]
 DEFAULTS: dict[str, Any] = {
     "population": 100,
     "insertions": "1",
-    "toggles": "2",
+    "switches": "1",
+    "toggles": "1",
+    "selection": "plus",
     "max_springs": 2000,
 }
 """Parameters of live evolution that differ from a run's.
 
-The net stays small enough to be quick; once it is full, as much is taken away as is added, so that
-evolution goes on.
+Small steps, and a parent that only a better net replaces: nobody ends a live evolution at its best
+generation, so it must not drift away from it. With comma selection it does once the net is full,
+where the step that may add springs no longer makes up for what the others undo: three-cylinders
+comes to a force differential of 34 in 540 generations, and to 11 so. The net stays small enough to
+be quick.
 """
 
 _SHORTEST = 1 / 40
