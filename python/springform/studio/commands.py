@@ -16,7 +16,6 @@ from .changes import forest_action as _forest
 from .changes import value_action as _value
 from .density import set_density
 from .editing_messages import DropSprings, SetDensity, SetSprings
-from .orbits import cell_orbit, spring_orbit, whole_orbit
 from .messages import (
     EditCells,
     EditSpring,
@@ -26,6 +25,7 @@ from .messages import (
     SetFramework,
     SetValue,
 )
+from .orbits import cell_orbit, spring_orbit, whole_orbit
 from .spring_groups import drop_springs, set_springs
 from .supports import fix_node, move_anchor
 

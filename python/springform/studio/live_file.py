@@ -1,7 +1,7 @@
 """What is kept of live evolution in a document's folder, so that a killed studio takes it up again.
 
     FOLDER/live.json    parameters that were changed, and factors of cells that were brushed
-    FOLDER/grown.json   the net that evolves, and where its evolution stands; only while there is one
+    FOLDER/grown.json   the net that evolves and where it stands; only while there is one
     FOLDER/discarded.json   the one that was discarded last
 
 Evolution is a function of the two: what a killed studio had grown since it last wrote grows again
