@@ -313,6 +313,26 @@ def test_edits_of_orbits_keep_the_symmetry() -> None:
         sf.edit_orbit(cylinder, [f"{cell} subdivide 1 6 1 1"])
 
 
+@pytest.mark.parametrize("scene", ["three-cylinders", "one-cylinder"])
+def test_stress_seeking_keeps_symmetries(scene: str, tmp_path: Path) -> None:
+    words = ["--steps", 4, "--type", 6, "--symmetry", "--out", tmp_path / "a.toml", "--json"]
+    report = in_process("seek", scene, *words).report
+    design = sf.load(tmp_path / "a.toml")
+    sf.symmetries(design).check(design.setting, design.forest)
+    assert report["springs"] == len(design.network().springs)
+    steps = list(sf.seek(sf.load(scene), steps=4, type=6, symmetry=True))
+    assert steps[-1].design.forest == design.forest
+    # Of the cells that a step divides, one carries most.
+    base = sf.load(scene)
+    inner = base.inner_forces(base.solve())
+    divided = {edit.split(" ")[0] for edit in steps[0].edits if " subdivide " in edit}
+    hottest = base.cells.addresses[int(np.argmax(inner))]
+    assert hottest in divided
+    lopsided = base.edited(["0 subdivide 1 1 1 1"])
+    with pytest.raises(sf.InputError, match="differ"):
+        list(sf.seek(lopsided, steps=1, type=6, symmetry=True))
+
+
 def test_distilled_patches_are_genes(tmp_path: Path) -> None:
     run = sf.evolve(
         sf.load("three-cylinders"), out=tmp_path / "run", population=20, generations=20, seed=3

@@ -262,7 +262,7 @@ def test_an_orbit_of_springs_that_would_break_a_rule_is_refused_whole(server: Se
         done = now["position"]
         assert done == replies.count(None)
         assert now["figures"]["springs"] < state["figures"]["springs"]
-        assert [line["label"] for line in now["history"]][0] == "Cut 12 springs, symmetrically"
+        assert now["history"][0]["label"] == "Cut 12 springs, symmetrically"
         assert window.ask(type="travel", position=0)["problem"] is None
         assert server.state()["figures"] == state["figures"]
         # One of the images is no spring any more, because a cell there is divided.

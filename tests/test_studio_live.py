@@ -229,9 +229,9 @@ def begin(server: Server, window: Window) -> dict[str, Any]:
     while True:
         state = live_at(window, 5)
         standing = read_standing(folder)
-        if state["status"] == "paused" and standing is not None:
-            if standing.generation == state["generation"]:
-                return state
+        paused = state["status"] == "paused" and standing is not None
+        if paused and standing.generation == state["generation"]:
+            return state
         window.ask(type="live_evolve", what="pause")
 
 

@@ -707,7 +707,7 @@ class StressSeeking:
         cls, setting: Setting, forest: Forest, kind: str, *, symmetries: Symmetries | None = None
     ) -> StressSeeking: ...
     def advance(self) -> list[str]:
-        """Subdivide the cell of highest inner force, or its orbit; the edits, none if none is left."""
+        """Subdivide the cell of highest inner force, or its orbit; return the edits, if any."""
 
     def reached(
         self, step: int, steps: int | None, differential: float | None, suf: float | None

@@ -1,7 +1,12 @@
 // Editing while the net moves: laws, supports, density, filters; sections and files for others.
 import { readFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
-import { pictureOf, STRONGEST } from "./picture";
+import * as THREE from "three";
+import type { Motion } from "../src/document/motion";
+import type { Net } from "../src/document/net";
+import type { Section } from "../src/document/section";
+import { Projection, pick } from "../src/viewport/picking";
+import { MIDDLING, pictureOf, STRONGEST } from "./picture";
 import { anchorPlace, converged, documentOf, expect, test } from "./studio";
 
 async function download(page: Page, item: string | RegExp): Promise<Buffer> {
@@ -153,6 +158,56 @@ test("a section takes half of the net away, and the rest can be picked", async (
   await page.getByLabel("Place of the section").fill("1");
   await page.waitForTimeout(600);
   expect((await pictureOf(page)).lit).toBeGreaterThan(half.lit);
+});
+
+test("whatever a section shows of a spring can be picked", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("k");
+  await page.getByRole("button", { name: "Section across x" }).click();
+  await page.mouse.move(500, 760);
+  await page.waitForTimeout(800);
+  // Everything that is drawn answers, up to the very plane.
+  const ground = await pictureOf(page);
+  const card = page.locator(".hover-card");
+  const springs = ground.nearest(MIDDLING);
+  expect(springs.length).toBeGreaterThan(1000);
+  for (let sample = 0; sample < 60; sample++) {
+    const { x, y } = springs[Math.floor((sample / 60) * springs.length)];
+    await page.mouse.move(x, y);
+    await page.waitForTimeout(80);
+    expect(await card.count(), `something lies at ${x}, ${y}`).toBe(1);
+  }
+});
+
+test("of a spring across a section the visible part is found, and no more", () => {
+  const positions = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 0, 1, -0.2, 0, 1]);
+  const camera = new THREE.PerspectiveCamera(40, 1.25, 0.1, 100);
+  camera.position.set(0, -6, 0.5);
+  camera.up.set(0, 0, 1);
+  camera.lookAt(0, 0, 0.5);
+  camera.updateMatrixWorld();
+  const motion = { positions } as Motion;
+  const net = { ends: new Int32Array([0, 1, 2, 3]) } as Net;
+  const at = (x: number, z: number) => {
+    const seen = new THREE.Vector3(x, 0, z).project(camera);
+    return [(seen.x + 1) * 400, (1 - seen.y) * 320] as const;
+  };
+  const picked = (section: Section | null, x: number, z = 0) =>
+    pick(net, new Projection({ motion, camera, width: 800, height: 640, section }), ...at(x, z), {
+      springs: true,
+    })?.row ?? null;
+  expect([-0.9, -0.1, 0.1, 0.9].map((x) => picked(null, x))).toEqual([0, 0, 0, 0]);
+  for (const share of [0.25, 0.5, 0.8]) {
+    const plane = -1 + 2 * share;
+    for (const flipped of [false, true]) {
+      const section: Section = { axis: 0, share, flipped };
+      for (const x of [-0.95, plane - 0.05, plane + 0.05, 0.95])
+        expect(picked(section, x)).toBe(x < plane !== flipped ? 0 : null);
+    }
+  }
+  expect(picked({ axis: 0, share: 0.5, flipped: false }, -0.6, 1)).toBe(1);
+  expect(picked({ axis: 0, share: 0.5, flipped: true }, -0.6, 1)).toBe(null);
 });
 
 test("pictures and models are written for others", async ({ page, open }) => {

@@ -23,6 +23,45 @@ export async function lasso(page: Page, x: number, y: number, radius: number): P
   await page.mouse.up();
 }
 
+/** What the engine's own files say of the design: nothing that the window reckons. */
+async function netOf(page: Page) {
+  const { hash, origin, search } = new URL(page.url());
+  const file = async (name: string) => {
+    const path = `/api/documents/${hash.slice(1)}/export/${name}`;
+    return (await page.request.get(`${origin}${path}${search}`)).text();
+  };
+  const lines = (await file("obj")).split("\n").map((line) => line.split(" "));
+  const places = lines.filter(([kind]) => kind === "v").map(([, ...place]) => place.map(Number));
+  const springs = lines.filter(([kind]) => kind === "l").map(([, ...ends]) => ends.map(Number));
+  const neighbours = places.map((): number[] => []);
+  for (const [a, b] of springs) {
+    neighbours[a - 1].push(b - 1);
+    neighbours[b - 1].push(a - 1);
+  }
+  const { anchors } = await documentOf(page);
+  const held = anchors.map(({ position }) =>
+    places.findIndex((place) =>
+      place.every((value, axis) => Math.abs(value - position[axis]) < 1e-9),
+    ),
+  );
+  /** Nodes within three springs of a node. */
+  const near = (node: number) => {
+    const found = new Set([node]);
+    for (let step = 0; step < 3; step++)
+      for (const known of [...found]) for (const next of neighbours[known]) found.add(next);
+    return found.size;
+  };
+  const ends = neighbours.map((others, node) => (held.includes(node) ? 2 : others.length));
+  const { forest } = JSON.parse(await file("json")) as { forest?: { cells?: object } };
+  return {
+    springs: springs.length,
+    dangling: ends.filter((count) => count < 2).length,
+    near: held.map(near),
+    /** Top-level cells that are not as the net began. */
+    written: Object.keys(forest?.cells ?? {}).length,
+  };
+}
+
 const row = (page: Page, name: string) =>
   page.locator(".comparison tr", { hasText: name }).locator("td");
 
@@ -73,15 +112,17 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   await page.getByRole("button", { name: "Graft crown" }).click();
   await page.getByRole("combobox", { name: "To", exact: true }).selectOption("anchors");
   await expect(page.locator(".comparison")).toBeVisible();
+  // Turned by a step, half of it would fall off the rings: it says so, and stays whole.
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("r");
-  await expect(page.getByRole("button", { name: "Rotate (1)" })).toBeVisible();
+  await expect(page.locator(".panel-graft")).toContainText("would fall off the net");
+  await expect(page.getByRole("button", { name: "Rotate" })).toBeDisabled();
   await expect(page.locator(".comparison")).toBeVisible();
   await expect.poll(() => greenPixels(page)).toBeGreaterThan(bare + 300);
-  await expect(page.locator(".panel-graft")).toContainText("12 places");
-  await expect(row(page, "Dangling nodes").last()).toHaveText("0");
   const promised = Number((await row(page, "Springs").last().textContent())!.replace(",", ""));
   expect((await documentOf(page)).position).toBe(0);
+  const bareNet = await netOf(page);
+  expect(bareNet.written).toBe(0);
 
   await page.getByRole("button", { name: "Apply" }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
@@ -90,6 +131,15 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   expect(after.figures.springs).toBeGreaterThan(before.figures.springs);
   expect(after.figures.springs).toBe(promised);
   expect(after.history.at(-1)!.label).toBe("Graft crown in 12 places");
+  const grafted = await netOf(page);
+  expect(grafted.springs).toBe(promised);
+  expect(grafted.dangling).toBe(0);
+  // All anchors are alike, and so is what lies round them now.
+  expect(grafted.near).toHaveLength(12);
+  expect(new Set(grafted.near).size).toBe(1);
+  expect(grafted.near[0]).toBeGreaterThan(bareNet.near[0]);
+  expect(grafted.written % 12).toBe(0);
+  expect(grafted.written).toBeGreaterThan(0);
   await page.getByRole("button", { name: "Undo", exact: true }).click();
   await expect.poll(async () => (await documentOf(page)).figures).toEqual(before.figures);
 });
@@ -132,4 +182,26 @@ test("cells are selected by what they share, and edited as an orbit", async ({ p
   expect(after.figures.springs).toBeGreaterThan(springs + 12);
   await page.keyboard.press("Control+z");
   await expect.poll(async () => (await documentOf(page)).figures.springs).toBe(springs);
+
+  // Springs too, and stress-seeking.
+  await converged(page);
+  await page.keyboard.press("x");
+  await page.mouse.click(anchor.x - 9, anchor.y - 34);
+  await expect
+    .poll(async () => (await documentOf(page)).history.at(-1)?.label)
+    .toBe("Cut 12 springs, symmetrically");
+  expect((await documentOf(page)).figures.springs).toBeLessThanOrEqual(springs - 12);
+  await page.keyboard.press("Control+z");
+  await expect.poll(async () => (await documentOf(page)).figures.springs).toBe(springs);
+  await page.keyboard.press("v");
+  await page.getByRole("tab", { name: "Net", exact: true }).click();
+  await page.getByRole("button", { name: "One step", exact: true }).click();
+  await expect
+    .poll(async () => (await documentOf(page)).history.at(-1)?.label)
+    .toBe("Seek stress, 1 step, symmetrically");
+  expect((await documentOf(page)).figures.springs).toBeGreaterThan(springs + 12);
+  await page.getByRole("tab", { name: "Graft", exact: true }).click();
+  await expect(page.locator(".section", { hasText: "Symmetry" }).last()).not.toContainText(
+    "The net does not",
+  );
 });

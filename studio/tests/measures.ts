@@ -76,7 +76,12 @@ test("a lasso in a page at 20,000 springs", async ({ page, open }) => {
   await page.keyboard.press("Shift+L");
   await page.mouse.move(880, 420);
   await page.mouse.down();
-  const { moves, drop } = await page.evaluate(lassoRound, { x: 540, y: 420, radius: 340, steps: 240 });
+  const { moves, drop } = await page.evaluate(lassoRound, {
+    x: 540,
+    y: 420,
+    radius: 340,
+    steps: 240,
+  });
   const title = await page.locator(".section h2").first().textContent();
   await page.mouse.up();
   console.log(

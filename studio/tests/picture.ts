@@ -14,8 +14,11 @@ export interface Picture {
   share(colour: [number, number, number], reach: number): number;
 }
 
-/** The strongest springs in the dark, and the weakest. */
+/** The strongest springs in the dark. */
 export const STRONGEST: [number, number, number] = [240, 249, 33];
+
+/** Springs of middling force in the dark. */
+export const MIDDLING: [number, number, number] = [204, 71, 120];
 
 export async function pictureOf(page: Page): Promise<Picture> {
   const viewport = page.locator("main.viewport");

@@ -224,4 +224,14 @@ test("live", async ({ page, open }) => {
   await page.getByRole("button", { name: "Evolve live" }).click();
   await page.waitForTimeout(4000);
   await take(page, "live");
+  const live = page.locator(".section", { hasText: "Live" }).first();
+  await live.getByText("Parameters").click();
+  const mutants = live.getByLabel("Mutants a generation");
+  await mutants.fill("0");
+  await mutants.press("Enter");
+  await live.getByRole("alert").waitFor();
+  await live.getByLabel("Cells are drawn").hover();
+  await page.getByRole("tooltip").waitFor();
+  await live.locator("summary").evaluate((summary) => summary.scrollIntoView());
+  await take(page, "live-parameters");
 });

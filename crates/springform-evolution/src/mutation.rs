@@ -88,6 +88,13 @@ struct Candidate {
     above: usize,
 }
 
+impl Candidate {
+    /// A favoured cell is to grow: what it owns is turned off that much more rarely, not more often.
+    fn toggling_factor(&self) -> f64 {
+        if self.on && self.factor > 1.0 { 1.0 / self.factor } else { self.factor }
+    }
+}
+
 const NONE: usize = usize::MAX;
 
 /// The steps of a mutation.
@@ -174,7 +181,8 @@ impl Candidates {
     fn sums(&self, step: usize, weighting: Weighting, parameters: &WeightingParameters) -> SumTree {
         let weight = |candidate: &Candidate| {
             let level = candidate.place.level;
-            candidate.factor * weight(weighting, parameters, level, self.deepest, candidate.force)
+            let factor = if step == TOGGLE { candidate.toggling_factor() } else { candidate.factor };
+            factor * weight(weighting, parameters, level, self.deepest, candidate.force)
         };
         match step {
             INSERT => SumTree::new(self.divisible.iter().map(|&at| weight(&self.expressed[at]))),

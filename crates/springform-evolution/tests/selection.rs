@@ -205,6 +205,42 @@ fn favoured_cells_are_drawn_in_proportion() {
 }
 
 #[test]
+fn what_grew_in_favoured_cells_is_turned_off_more_rarely_and_on_more_often() {
+    for on in [true, false] {
+        let mut forest = Forest::new(4, Content::QUAD);
+        for face in 0..4 {
+            let cell = Place::top(face);
+            Edit::Subdivide { cell, children: [Content::QUAD; 4] }.apply(&mut forest).expect("a leaf");
+            if !on {
+                Edit::Toggle { cell, on }.apply(&mut forest).expect("it has children");
+            }
+        }
+        let weights = CellWeights::new([(Place::top(1), 4.0)]);
+        let mut candidates = Candidates::new(&forest, &[]);
+        candidates.favour(|place| weights.of(place));
+        let catalogue = Catalogue::default();
+        let palette = Palette { types: &[QUAD], catalogue: &catalogue, weights: &PLAIN };
+        let nothing = Amount::Count(0.0);
+        let strategy = Strategy {
+            insertions: nothing,
+            switches: nothing,
+            toggles: Amount::Count(1.0),
+            weighting: Weighting::Unweighted,
+        };
+        let mut counts = [0; 4];
+        for individual in 0..26_000 {
+            let edits = mutate(&candidates, &strategy, &palette, &mut Draws::new(7, 1, individual));
+            let &[Edit::Toggle { cell, .. }] = edits.as_slice() else { panic!("one toggle: {edits:?}") };
+            counts[cell.face as usize] += 1;
+        }
+        let weight = if on { 0.25 } else { 4.0 };
+        let shares = [1.0, weight, 1.0, 1.0].map(|one| one / (3.0 + weight));
+        // 3 degrees of freedom: above 16.3 in one of a thousand.
+        assert!(chi_square(&counts, &shares) < 16.3, "{counts:?}");
+    }
+}
+
+#[test]
 fn factors_go_on_to_descendants() {
     let cell = |address: &str| Place::parse(address).expect("an address");
     let weights = CellWeights::new([(cell("4"), 2.0), (cell("4.1"), 5.0), (cell("4.2.3"), 0.0)]);

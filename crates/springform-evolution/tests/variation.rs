@@ -159,8 +159,7 @@ proptest! {
             let mean = each.iter().sum::<f64>() / each.len() as f64;
             let expected = if each.contains(&0.0) { 0.0 } else { mean };
             prop_assert!((factor - expected).abs() <= 1e-12 * expected);
-            let stands = images.first() == Some(&place);
-            prop_assert_eq!(here.factor(place), if stands { factor } else { 0.0 });
+            prop_assert_eq!(here.factor(place), if orbits.represents(place) { factor } else { 0.0 });
         }
     }
 

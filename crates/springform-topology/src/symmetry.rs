@@ -378,15 +378,16 @@ impl Orbits {
         Ok(Orbits { origins, members, stabilisers, mirrors, catalogue: catalogue.clone() })
     }
 
-    /// The cell stands for its orbit: it is the lowest of its images.
+    /// The cell stands for its orbit.
     pub fn represents(&self, place: Place) -> bool {
         self.representative(place) == place
     }
 
-    /// The cell that stands for another one's orbit.
+    /// The cell that stands for another one's orbit: in the lowest face, the one with the first path of children, as
+    /// [`Orbits::symmetrise`] takes it for the others.
     pub fn representative(&self, place: Place) -> Place {
         let back = self.on_origin(place);
-        self.images_on_origin(back).min().unwrap_or(back)
+        self.images_on_origin(back).min_by(|a, b| a.path().cmp(b.path())).unwrap_or(back)
     }
 
     /// The cells of a cell's orbit, each once, ascending.

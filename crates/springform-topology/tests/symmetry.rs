@@ -112,7 +112,8 @@ proptest! {
         }
     }
 
-    /// The images of a cell are where the group carries it; the lowest stands for all.
+    /// The images of a cell are where the group carries it; the first stands for all, and what is done to it is done
+    /// to all.
     #[test]
     fn orbits_hold_all_images(design in grown_designs(25), mut dice in dice(8)) {
         let Ok(group) = symmetries(&design.mesh, &design.anchors) else { return Ok(()) };
@@ -122,8 +123,22 @@ proptest! {
         for place in [top, top.child(first), top.child(first).child(dice.below(4) as u8)] {
             let images: BTreeSet<Place> = group.iter().map(|one| one.place(place)).collect();
             prop_assert_eq!(orbits.images(place), Vec::from_iter(images.iter().copied()));
-            prop_assert_eq!(Some(&orbits.representative(place)), images.first());
-            prop_assert_eq!(orbits.represents(place), images.first() == Some(&place));
+            let first = images.iter().min_by_key(|image| (image.face, Vec::from_iter(image.path())));
+            prop_assert_eq!(Some(&orbits.representative(place)), first);
+            prop_assert_eq!(orbits.represents(place), first == Some(&place));
+        }
+        let mut forest = Forest::new(faces, Content::QUAD);
+        for level in 0..3 {
+            let mut places = Vec::new();
+            forest.visit_reachable(|_, place| places.extend((place.level == level).then_some(place)));
+            let place = orbits.representative(places[dice.below(places.len() as u32) as usize]);
+            let divide = Edit::Subdivide { cell: place, children: [Content::QUAD; 4] };
+            prop_assert_eq!(divide.apply(&mut forest), Ok(()));
+            prop_assert_eq!(orbits.symmetrise(&mut forest, [place.face], &mut Vec::new()), Ok(()));
+            for image in orbits.images(place) {
+                let cell = forest.find(image).expect("an image of a cell");
+                prop_assert!(forest.children(cell).is_some(), "{image} is divided as {place} is");
+            }
         }
     }
 

@@ -22,6 +22,7 @@ def document_state(
     saved: bool,
     revision: int,
     figures: Figures,
+    own: Figures,
     before: Figures | None,
     looking: Looked | None,
 ) -> DocumentState:
@@ -45,6 +46,7 @@ def document_state(
             for number, action in enumerate(actions, start=first + 1)
         ],
         figures=figures,
+        own=own,
         before=before,
         looking=looking,
         anchors=_anchors(design, shown),

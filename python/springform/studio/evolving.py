@@ -70,6 +70,11 @@ class Evolving:
         self._thread: threading.Thread | None = None
         self._start: tuple[int, float | None] = (0, None)
 
+    @property
+    def began(self) -> tuple[int, float | None]:
+        """Springs and force differential of the design that the run started from."""
+        return self._start
+
     # --- control -------------------------------------------------------------------------------
 
     def start(self, design: Design, values: Mapping[str, Any]) -> None:
@@ -84,7 +89,7 @@ class Evolving:
     def open(self) -> None:
         """Read a run that is in the folder, to look at and to go on with."""
         self._read(open_run(self.folder))
-        self.status, self.reason = "paused", ""
+        self.status, self.reason = self._left()
         self.watch()
 
     def watch(self) -> None:

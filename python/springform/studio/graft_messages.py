@@ -78,7 +78,7 @@ class _Placing(Message):
     anchor: Key | None
     """Anchor that it is set on; None of both: every anchor."""
     rotate: Annotated[int, Field(ge=-1000, le=1000)]
-    """Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole."""
+    """Steps: quarter turns, or round an anchor from cell to cell while the patch stays whole."""
     mirror: bool
     orbit: bool
     """Whether it is set on all images under the framework's symmetries."""

@@ -28,12 +28,15 @@ DEFAULTS: dict[str, Any] = {
     "population": 100,
     "insertions": "1",
     "toggles": "2",
+    "selection": "plus",
     "max_springs": 2000,
 }
 """Parameters of live evolution that differ from a run's.
 
-The net stays small enough to be quick; once it is full, as much is taken away as is added, so that
-evolution goes on.
+Only a better net replaces the parent: nobody ends a live evolution at its best generation, so it
+must not drift away from it. With comma selection it does once the net is full and no springs that
+come make up for what mutations undo: three-cylinders came to a force differential of 34 in 540
+generations, and to 10.5 so. The net stays small enough to be quick.
 """
 
 _SHORTEST = 1 / 40

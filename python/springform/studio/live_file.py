@@ -1,7 +1,8 @@
 """What is kept of live evolution in a document's folder, so that a killed studio takes it up again.
 
     FOLDER/live.json    parameters that were changed, and factors of cells that were brushed
-    FOLDER/grown.json   the net that evolves, and where its evolution stands; only while there is one
+    FOLDER/grown.json   the net that evolves and where it stands; only while there is one
+    FOLDER/discarded.json   the one that was discarded last
 
 Evolution is a function of the two: what a killed studio had grown since it last wrote grows again
 the same way.
@@ -10,6 +11,7 @@ the same way.
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -22,6 +24,7 @@ from ..files import read_text, write_atomically
 
 _SETTINGS = "live.json"
 _NET = "grown.json"
+_DISCARDED = "discarded.json"
 
 
 class _Record(BaseModel):
@@ -96,8 +99,27 @@ def write_standing(folder: Path, standing: Standing) -> None:
 
 
 def forget_standing(folder: Path) -> None:
-    """Remove the net that evolved, which was kept or discarded."""
+    """Remove the net that evolved, which was kept."""
     (folder / _NET).unlink(missing_ok=True)
+
+
+def discard_standing(folder: Path) -> None:
+    """Put the net that evolved aside; the one discarded before is gone."""
+    with suppress(FileNotFoundError):
+        (folder / _NET).replace(folder / _DISCARDED)
+
+
+def restore_standing(folder: Path) -> None:
+    """Bring back what was discarded last. Raises `InputError`: nothing was."""
+    try:
+        (folder / _DISCARDED).replace(folder / _NET)
+    except FileNotFoundError:
+        raise InputError("nothing was discarded that could be brought back") from None
+
+
+def is_restorable(folder: Path) -> bool:
+    """Whether something was discarded that can be brought back."""
+    return (folder / _DISCARDED).exists()
 
 
 def _read(path: Path, kind: type[_R]) -> _R | None:

@@ -14,8 +14,9 @@ class LiveEvolve(Message):
 
     type: Literal["live_evolve"] = "live_evolve"
     id: int
-    what: Literal["start", "pause", "continue", "change", "defaults", "keep", "discard"]
-    """`change` and `defaults` are for parameters, whether something evolves or not."""
+    what: Literal["start", "pause", "continue", "change", "defaults", "keep", "discard", "restore"]
+    """`change` and `defaults` are for parameters, whether something evolves or not; `restore`
+    brings back what was discarded last."""
     parameters: dict[str, Any] = Field(default_factory=dict)
     """Of `start` and `change`; others stay as they are."""
 
@@ -56,3 +57,5 @@ class LiveState(Message):
     """Names of the parameters that a person changed."""
     weights: dict[str, float] = Field(default_factory=dict)
     """Factors by address of cells."""
+    restorable: bool = False
+    """Whether something was discarded that can be brought back."""

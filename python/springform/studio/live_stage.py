@@ -72,6 +72,7 @@ class LiveStage:
                 weights=self.weights,
                 changed=list(self._settings.parameters),
                 parameters=parameters.model_dump(mode="json"),
+                restorable=live_file.is_restorable(self._folder),
             )
         points = [LivePoint.model_validate(point.model_dump()) for point in list(live.points)]
         return LiveState(
@@ -99,6 +100,9 @@ class LiveStage:
         if request.what == "start":
             await self._start(request.parameters)
             return None
+        if request.what == "restore":
+            await self._restore()
+            return None
         live = self._known()
         if request.what == "pause":
             live.pause()
@@ -109,12 +113,12 @@ class LiveStage:
             self.live = None
             if request.what == "keep":
                 return design, live.generation
-            self.forget()
+            live_file.discard_standing(self._folder)
         self._tell(self.state())
         return None
 
     def forget(self) -> None:
-        """Forget the net that evolved, which was kept or discarded."""
+        """Forget the net that evolved, which was kept."""
         live_file.forget_standing(self._folder)
         self._tell(self.state())
 
@@ -156,6 +160,13 @@ class LiveStage:
         if parameters:
             await self._change(parameters)
         self.live = await asyncio.to_thread(self._begun, self._design(), None)
+        self._grew()
+
+    async def _restore(self) -> None:
+        if self.live is not None:
+            raise InputError("the net evolves; keep or discard what it grew first")
+        live_file.restore_standing(self._folder)
+        self.take_up()
         self._grew()
 
     def _begun(self, design: Design, standing: live_file.Standing | None) -> Live:

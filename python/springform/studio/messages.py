@@ -43,6 +43,7 @@ from .run_messages import (
     Lineage,
     Look,
     Looked,
+    OpenRun,
     Reinstate,
     RunState,
     SteerRun,
@@ -220,6 +221,7 @@ Request = Annotated[
     | Move
     | Evolve
     | SteerRun
+    | OpenRun
     | Look
     | Follow
     | Reinstate
@@ -312,6 +314,8 @@ class DocumentState(_Message):
     history: list[HistoryLine]
     """The actions round the position, in order."""
     figures: Figures
+    own: Figures
+    """Figures of the design, whatever is looked at."""
     before: Figures | None
     """Figures before the last action; None at the start."""
     anchors: list[AnchorState]

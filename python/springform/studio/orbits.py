@@ -1,4 +1,4 @@
-"""The symmetry lock: what is done to one cell or spring is done to its whole orbit, or not at all."""
+"""The symmetry lock: what is done to a cell or spring is done to its whole orbit, or not at all."""
 
 from __future__ import annotations
 

@@ -87,8 +87,31 @@ class GenerationRow(Message):
     """Parameters were changed after it."""
 
 
+class OpenRun(Message):
+    """Show another run of the document, to look at and to go on with."""
+
+    type: Literal["open_run"] = "open_run"
+    id: int
+    number: int
+
+
+class RunLine(Message):
+    """A run of the document, in short."""
+
+    number: int
+    """In the order in which they were started, from 1."""
+    name: str
+    """Its folder, as pins and the history name it."""
+    generations: int
+    springs: int
+    """Of its last parent."""
+    force_differential: float | None
+    fitness: str
+    """What its best has least of."""
+
+
 class RunState(Message):
-    """The run of the document."""
+    """The run of the document that is shown, and which others there are."""
 
     type: Literal["run"] = "run"
     status: Literal["none", "running", "paused", "ended", "failed"]
@@ -100,6 +123,11 @@ class RunState(Message):
     """Another process that drives it; empty: this studio does, or nobody."""
     following: bool
     parameters: dict[str, Any]
+    start_springs: int
+    """Of the design that it started from."""
+    start_differential: float | None
+    runs: list[RunLine]
+    """All runs of the document, the newest first; the one that is shown has its `name`."""
     generations: int
     """Generations made."""
     first: int

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,21 @@ import numpy as np
 
 from ..design import Design
 from ..errors import InputError
+from ..run import Run
 from .changes import Place
 from .choosing import brushed, clusters
 from .evolving import Evolving
 from .frame_messages import TableHeader
 from .frames import encode
-from .run_messages import Brushes, Cluster, Clusters, Lineage, RunState, SteerRun
+from .run_messages import (
+    Brushes,
+    Cluster,
+    Clusters,
+    Lineage,
+    RunLine,
+    RunState,
+    SteerRun,
+)
 from .window import Window
 
 _PERIOD = 0.1
@@ -41,11 +51,14 @@ class RunStage:
         """
         self.following = False
         self._folder = folder
+        self._former = None if former is None else Path(former)
         self._changed = changed
         self._loop = asyncio.get_running_loop()
         self._told = 0.0
         self._waits = False
-        self.run = self._newest(former)
+        self.run: Evolving | None = None
+        self._known = self._lines()
+        self.run = self._newest()
 
     @property
     def generations(self) -> int:
@@ -55,10 +68,11 @@ class RunStage:
     @property
     def name(self) -> str:
         """The run's folder as pins and the history name it; empty: there is none."""
-        if self.run is None:
-            return ""
-        own = self.run.folder.parent == self._folder
-        return f"{self._folder.name}/{self.run.folder.name}" if own else str(self.run.folder)
+        return "" if self.run is None else self._name_of(self.run.folder)
+
+    def _name_of(self, folder: Path) -> str:
+        own = folder.parent == self._folder
+        return f"{self._folder.name}/{folder.name}" if own else str(folder)
 
     def suf(self, place: Place) -> float | None:
         """Return the spring utilization factor of an individual; None for one of another run."""
@@ -72,28 +86,80 @@ class RunStage:
             raise InputError("there is no run; start one")
         return self.run
 
-    def _newest(self, former: str | None) -> Evolving | None:
+    @property
+    def _folders(self) -> dict[int, Path]:
+        """The document's runs, the newest first; 0 is one elsewhere that it began with."""
+        own = {int(folder.name): folder for folder in self._folder.glob("[0-9]*")}
+        folders = own if self._former is None else own | {0: self._former}
+        # A studio that was killed may have left a folder that is no run yet.
+        return {number: folders[number] for number in sorted(folders, reverse=True)}
+
+    def _lines(self) -> dict[int, RunLine]:
+        """Return all runs in short, as their folders hold them."""
+        lines = {}
+        for number, folder in self._folders.items():
+            with suppress(InputError):
+                run = Run(folder)
+                lines[number] = RunLine(
+                    number=number,
+                    name=self._name_of(folder),
+                    generations=run.generations,
+                    springs=run.final["springs"],
+                    force_differential=run.final["force_differential"],
+                    fitness=run.parameters.fitness,
+                )
+        return lines
+
+    def _runs(self) -> list[RunLine]:
+        """Return all runs in short, the one that is shown as it stands now."""
+        rows = [] if self.run is None else self.run.rows
+        now: dict[str, Any] = {}
+        if rows:
+            now = {name: getattr(rows[-1], name) for name in ("springs", "force_differential")}
+            now["generations"] = len(rows)
+        return [
+            line.model_copy(update=now) if line.name == self.name else line
+            for line in self._known.values()
+        ]
+
+    def _newest(self) -> Evolving | None:
         """Return the run that the document had last, to look at and to go on with."""
-        folders = sorted(self._folder.glob("[0-9]*"), reverse=True)
-        if former is not None:
-            folders.append(Path(former))
-        for folder in folders:
-            run = Evolving(folder, self._run_changed)
-            try:
-                run.open()
-            except InputError:
-                continue  # it died before it was a run
-            return run
+        for number in self._folders:
+            with suppress(InputError):
+                return self._opened(number)
         return None
+
+    def _opened(self, number: int) -> Evolving:
+        run = Evolving(self._folders[number], self._run_changed)
+        run.open()
+        return run
+
+    async def open(self, number: int, in_thread: InThread) -> None:
+        """Show another run; the one before ends, and can be gone on with when it is shown again.
+
+        Raises `InputError`: there is no such run, or it is damaged.
+        """
+        if number not in self._folders:
+            raise InputError("there is no such run", key="number")
+        if self.run is not None and self.run.folder == self._folders[number]:
+            return
+        run = await in_thread(lambda: self._opened(number))
+        await self._show(run)
+        self.following = False
+
+    async def _show(self, run: Evolving) -> None:
+        if self.run is not None:
+            await asyncio.to_thread(self.run.stop)
+        self.run = run
+        self._known = await asyncio.to_thread(self._lines)
 
     async def start(self, design: Design, values: dict[str, Any], in_thread: InThread) -> None:
         """Start a run and follow it. Raises `InputError`: the values do not fit."""
-        if self.run is not None:
-            await asyncio.to_thread(self.run.stop)
         folder = self._folder / f"{len(list(self._folder.glob('*'))) + 1:04}"
         run = Evolving(folder, self._run_changed)
         await in_thread(lambda: run.start(design, values))
-        self.run, self.following = run, True
+        await self._show(run)
+        self.following = True
 
     async def steer(self, request: SteerRun, in_thread: InThread) -> None:
         """Do what a window asks of the run. Raises `InputError`: it does not fit."""
@@ -157,6 +223,9 @@ class RunStage:
                 driver="" if run is None or run.driver is None else str(run.driver),
                 following=self.following,
                 parameters={} if run is None else run.parameters.model_dump(mode="json"),
+                start_springs=0 if run is None else run.began[0],
+                start_differential=None if run is None else run.began[1],
+                runs=self._runs(),
                 generations=window.generations,
                 first=first,
                 rows=rows,

@@ -66,6 +66,7 @@ from .run_messages import (
     Evolve,
     Follow,
     Look,
+    OpenRun,
     Reinstate,
     SteerRun,
 )
@@ -247,6 +248,8 @@ class Session:
             case Evolve() | SteerRun():
                 await self._steer(request)
                 return []
+            case OpenRun():
+                await self._open_run(request.number)
             case LiveEvolve():
                 await self._steer_live(request)
             case WeighCells():
@@ -362,7 +365,7 @@ class Session:
     # --- live evolution ------------------------------------------------------------------------
 
     async def _steer_live(self, request: LiveEvolve) -> None:
-        if request.what == "start":
+        if request.what in ("start", "restore"):
             self._check_design_is_shown()
             self.runs.following = False
         kept = await self._live.steer(request)
@@ -442,6 +445,17 @@ class Session:
         values = {"cell_weights": self._live.weights} | request.parameters
         start = self._start_of(request)
         await self.runs.start(start, values, self._in_thread)
+        self._tell_other_run()
+
+    async def _open_run(self, number: int) -> None:
+        await self.runs.open(number, self._in_thread)
+        # What was looked at was in the other run.
+        if self._looking is not None:
+            self._looking = None
+            self._take_design()
+        self._tell_other_run()
+
+    def _tell_other_run(self) -> None:
         for window in self._windows:
             window.generations = 0
         self._tell_runs()
@@ -539,6 +553,7 @@ class Session:
             saved=self.is_saved,
             revision=self._revision,
             figures=self._figures[document.position] if looked is None else looked.figures,
+            own=self._figures[document.position],
             before=self._figures.get(document.position - 1) if looked is None else None,
             looking=None if looked is None else looked.looked,
         )

@@ -129,9 +129,9 @@ export function textOf(name: ParameterName, value: unknown): string {
 }
 
 /** The value that a text says. What is no number stays text: the engine says what is wrong with it. */
-export function valueOf(name: ParameterName, text: string): unknown {
+export function valueSaid(name: ParameterName, text: string): unknown {
   const { kind, limit } = PARAMETERS[name];
-  const plain = text.trim().replace(/(\d),(\d)/, kind === "number" ? "$1.$2" : "$1,$2");
+  const plain = kind === "number" ? text.trim().replace(",", ".") : text.trim();
   if (kind === "check") return text === "true";
   if (limit && (plain === "" || plain === "0")) return null;
   if (kind !== "number" || plain === "") return plain;

@@ -3,8 +3,8 @@ import { Columns2, Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
 import { compare } from "../document/comparing";
 import { lookAt, shownSide } from "../document/pins";
+import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
 import { inDigits } from "../document/scale";
-import { type ParameterName, type Texts, textOf, valueOf } from "../document/parameters";
 import { ask, askQuietly, notify, store } from "../document/store";
 import type { Asking, Refused } from "../protocol/connection";
 import { ClusterSection, LineageSection } from "./Choosing";
@@ -164,7 +164,7 @@ function Parameters() {
   const [problems, setProblems] = useState<Texts>({});
   const alive = run?.state.status === "running" || run?.state.status === "paused";
   const send = async (request: (values: Record<string, unknown>) => Asking, names: Names) => {
-    const values = names.map((name) => [name, valueOf(name, texts[name] ?? "")]);
+    const values = names.map((name) => [name, valueSaid(name, texts[name] ?? "")]);
     setProblems({});
     try {
       await askQuietly(request(Object.fromEntries(values)));

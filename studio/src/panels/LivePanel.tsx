@@ -2,7 +2,7 @@
 import { Check, Eraser, Pause, Play, Sprout, Square, X } from "lucide-react";
 import type { ReactNode } from "react";
 import { useState } from "react";
-import { type ParameterName, type Texts, textOf, valueOf } from "../document/parameters";
+import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
 import { inDigits } from "../document/scale";
 import { ask, askQuietly, store } from "../document/store";
 import { GROW } from "../document/weights";
@@ -84,7 +84,7 @@ function LiveParameters({ live }: { live: LiveState }) {
   const take = async (name: ParameterName, text: string) => {
     let problem = "";
     try {
-      const parameters = { [name]: valueOf(name, text) };
+      const parameters = { [name]: valueSaid(name, text) };
       await askQuietly({ type: "live_evolve", what: "change", parameters });
     } catch (error) {
       problem = (error as Refused).words;
@@ -94,11 +94,15 @@ function LiveParameters({ live }: { live: LiveState }) {
   const changed = live.changed.length;
   return (
     <details className="live-parameters">
-      <summary>
-        Parameters{changed > 0 && <span className="aside">{changed} changed</span>}
-      </summary>
+      <summary>Parameters{changed > 0 && <span className="aside">{changed} changed</span>}</summary>
       <p className="explain">Changes count from the next generation on.</p>
-      <ParameterFields names={SET} texts={texts} problems={problems} labels={LABELS} onTake={take} />
+      <ParameterFields
+        names={SET}
+        texts={texts}
+        problems={problems}
+        labels={LABELS}
+        onTake={take}
+      />
       {changed > 0 && (
         <button
           type="button"

@@ -23,6 +23,7 @@ export interface Protocol {
     | Move
     | Evolve
     | SteerRun
+    | OpenRun
     | Look
     | Follow
     | Reinstate
@@ -286,6 +287,14 @@ export interface SteerRun {
   };
 }
 /**
+ * Show another run of the document, to look at and to go on with.
+ */
+export interface OpenRun {
+  type: "open_run";
+  id: number;
+  number: number;
+}
+/**
  * Show a parent or an individual of the run instead of the design, or the design again.
  */
 export interface Look {
@@ -345,9 +354,10 @@ export interface LiveEvolve {
   type: "live_evolve";
   id: number;
   /**
-   * `change` and `defaults` are for parameters, whether something evolves or not.
+   * `change` and `defaults` are for parameters, whether something evolves or not; `restore`
+   * brings back what was discarded last.
    */
-  what: "start" | "pause" | "continue" | "change" | "defaults" | "keep" | "discard";
+  what: "start" | "pause" | "continue" | "change" | "defaults" | "keep" | "discard" | "restore";
   /**
    * Of `start` and `change`; others stay as they are.
    */
@@ -463,7 +473,7 @@ export interface PlanGraft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
+   * Steps: quarter turns, or round an anchor from cell to cell while the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -489,7 +499,7 @@ export interface Graft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
+   * Steps: quarter turns, or round an anchor from cell to cell while the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -557,6 +567,7 @@ export interface DocumentState {
    */
   history: HistoryLine[];
   figures: Figures;
+  own: Figures1;
   /**
    * Figures before the last action; None at the start.
    */
@@ -612,6 +623,23 @@ export interface Place {
  * Measures of the net at equilibrium.
  */
 export interface Figures {
+  springs: number;
+  nodes: number;
+  cells: number;
+  force_differential: number | null;
+  force_min: number;
+  force_max: number;
+  force_mean: number;
+  total_length: number;
+  area: number;
+  shortest_spring: number;
+  converged: boolean;
+  reason: string;
+}
+/**
+ * Measures of the net at equilibrium.
+ */
+export interface Figures1 {
   springs: number;
   nodes: number;
   cells: number;
@@ -688,7 +716,7 @@ export interface Looked {
   pin: number | null;
 }
 /**
- * The run of the document.
+ * The run of the document that is shown, and which others there are.
  */
 export interface RunState {
   type: "run";
@@ -708,6 +736,15 @@ export interface RunState {
     [k: string]: unknown;
   };
   /**
+   * Of the design that it started from.
+   */
+  start_springs: number;
+  start_differential: number | null;
+  /**
+   * All runs of the document, the newest first; the one that is shown has its `name`.
+   */
+  runs: RunLine[];
+  /**
    * Generations made.
    */
   generations: number;
@@ -716,6 +753,29 @@ export interface RunState {
    */
   first: number;
   rows: GenerationRow[];
+}
+/**
+ * A run of the document, in short.
+ */
+export interface RunLine {
+  /**
+   * In the order in which they were started, from 1.
+   */
+  number: number;
+  /**
+   * Its folder, as pins and the history name it.
+   */
+  name: string;
+  generations: number;
+  /**
+   * Of its last parent.
+   */
+  springs: number;
+  force_differential: number | null;
+  /**
+   * What its best has least of.
+   */
+  fitness: string;
 }
 /**
  * What a generation gave: its parent now, and the force differentials of its individuals.
@@ -802,6 +862,10 @@ export interface LiveState {
   weights: {
     [k: string]: number;
   };
+  /**
+   * Whether something was discarded that can be brought back.
+   */
+  restorable: boolean;
 }
 /**
  * What a generation of live evolution gave.
@@ -907,7 +971,7 @@ export interface PreviewState {
   springs_removed: number;
   cells_added: number;
   cells_removed: number;
-  figures: Figures1;
+  figures: Figures2;
   /**
    * Ends of the springs that would come, six numbers each [m]; empty if they are very many.
    */
@@ -920,7 +984,7 @@ export interface PreviewState {
 /**
  * Measures of the net at equilibrium.
  */
-export interface Figures1 {
+export interface Figures2 {
   springs: number;
   nodes: number;
   cells: number;

@@ -144,7 +144,13 @@ export class Viewport {
     const { net, motion, view } = store.getState();
     if (!net || !motion || isComparing()) return null;
     const { section } = view;
-    const look = { motion, camera: this.eye.camera, width: this.width, height: this.height, section };
+    const look = {
+      motion,
+      camera: this.eye.camera,
+      width: this.width,
+      height: this.height,
+      section,
+    };
     if (!this.projection?.holds(look)) this.projection = new Projection(look);
     return pick(net, this.projection, x, y, kinds);
   }
