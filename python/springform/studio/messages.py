@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .editing_messages import CurvePoints, DropSprings, SetDensity, SetSprings, SpringGroupLine
 from .frame_messages import Frame
 from .graft_messages import (
     AskSymmetry,
@@ -421,6 +421,7 @@ class Protocol(_Message):
     lineage: Lineage
     brushes: Brushes
     clusters: Clusters
+    curve: CurvePoints
 
 
 class _PlainSchema(GenerateJsonSchema):

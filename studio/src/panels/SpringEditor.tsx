@@ -7,6 +7,7 @@ import { lengthsOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
 import { selectedRows, springKey } from "../document/selection";
 import { ask, type State, store } from "../document/store";
+import { CurveField, pointsOf } from "./CurveField";
 import { Choice, Hint, Section } from "./parts";
 import { useStudio } from "./use";
 
@@ -140,15 +141,7 @@ function LawForm({ scope }: { scope: Scope }) {
         </p>
       )}
       {chosen?.key === "curve" ? (
-        <label className="curve-field">
-          <span>Points: strain, force in N; a line each, from 0, 0</span>
-          <textarea
-            rows={4}
-            value={constant}
-            placeholder={newLaw ? "" : "as it is"}
-            onChange={(event) => setConstant(event.target.value)}
-          />
-        </label>
+        <CurveField text={constant} empty={newLaw ? "" : "as it is"} onText={setConstant} />
       ) : (
         chosen && (
           <Quantity
@@ -304,18 +297,6 @@ function plain(value: number, digits = 6): string {
 
 function numberOf(text: string): number {
   return text.trim() === "" ? Number.NaN : Number(text.trim().replace(",", "."));
-}
-
-function pointsOf(text: string): number[][] {
-  return text
-    .split("\n")
-    .filter((line) => line.trim())
-    .map((line) =>
-      line
-        .trim()
-        .split(/[\s,;]+/)
-        .map(Number),
-    );
 }
 
 function diameterOf(net: Net, rows: number[]): string {

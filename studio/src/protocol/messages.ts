@@ -47,6 +47,7 @@ export interface Protocol {
   lineage: Lineage;
   brushes: Brushes;
   clusters: Clusters;
+  curve: CurvePoints;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -948,6 +949,14 @@ export interface MotionHeader {
    * Nodes that are dragged.
    */
   held: number[];
+  /**
+   * From the change that it follows until its step began [s]; 0 of later steps.
+   */
+  waited: number;
+  /**
+   * What its step took [s].
+   */
+  took: number;
   arrays: ArrayHeader[];
 }
 /**
@@ -1059,4 +1068,14 @@ export interface Cluster {
   generation: number;
   individual: number;
   size: number;
+}
+/**
+ * A measured curve, as it was read from a CSV file.
+ */
+export interface CurvePoints {
+  strains: number[];
+  /**
+   * Of every test point [N].
+   */
+  forces: number[];
 }

@@ -1,6 +1,7 @@
 // The viewport: what the document holds and how it is to be seen, drawn on a canvas when either changes.
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
+import { formed } from "../document/conditions";
 import { grafting } from "../document/grafting";
 import { type Motion, positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
@@ -334,10 +335,12 @@ export class Viewport {
   /** The springs as they are seen. */
   private lines(net: Net, motion: Motion, cut: Cut | null): Lines {
     const { view, theme } = store.getState();
-    const { colours } = this.colouring ?? colouringOf(net, motion, view.colour, theme);
+    const seen = this.colouring ?? colouringOf(net, motion, view.colour, theme);
+    const { colours, conditions } = seen;
     const widths = view.thickness ? widthsOf(net, motion, view.colour) : WIDTH;
     const count = net.ends.length / 2;
-    return clipped(cut, { count, ends: endsOf(net, motion.positions), colours, widths });
+    const springs = { count, ends: endsOf(net, motion.positions), colours, widths };
+    return clipped(cut, formed(springs, conditions));
   }
 
   private updateMarks(
