@@ -280,6 +280,8 @@ export class Viewport {
     const still = performance.now() - this.lastMove > STILL_AFTER && !gliding;
     clearTimeout(this.stillTimer);
     this.render(!this.software || still);
+    // For whoever looks at the page: whether the picture is as fine as it will be.
+    this.canvas.dataset.fine = String(!this.software || still);
     if (gliding) {
       this.lastMove = performance.now();
       this.redraw();
