@@ -53,7 +53,11 @@ test("a file is opened, saved, saved under another name and found again", async 
   writeFileSync(other, "not mine");
   await canvas.focus();
   await page.keyboard.press("Control+Shift+S");
-  await page.getByLabel("Path on this machine").fill(other);
+  const target = page.getByLabel("Path on this machine");
+  await target.fill(`${home}/no/such/folder/net.toml`);
+  await page.getByRole("button", { name: "Save", exact: true }).click();
+  await expect(page.getByRole("dialog").getByRole("alert")).toContainText("does not exist");
+  await target.fill(other);
   await page.getByRole("button", { name: "Save", exact: true }).click();
   await expect(page.getByRole("dialog").getByRole("alert")).toContainText("exists");
   expect(readFileSync(other, "utf8")).toBe("not mine");
@@ -115,6 +119,8 @@ test("what is exported is what is seen, and others can read it", async ({ page, 
     };
   }, drawing);
   expect(parsed.errors).toBe(0);
+  expect(drawing).toContain("Force [N]");
+  expect(new Set(drawing.match(/stroke="#\w+"/g)).size).toBeGreaterThan(50);
   expect(parsed.springs).toBe(figures.springs);
   expect(parsed.within).toBe(figures.springs);
   expect(parsed.names).toEqual(anchors.map(({ name }) => name));
@@ -128,6 +134,7 @@ test("what is exported is what is seen, and others can read it", async ({ page, 
     expect(solved(file).springs).toBe(figures.springs);
     expect(solved(file).force_max).toBeCloseTo(figures.force_max, 9);
   }
+  expect((await download(page, /ZIP/)).subarray(0, 2).toString()).toBe("PK");
   const lines = (await download(page, /OBJ/)).toString().split("\n");
   const places = lines
     .filter((line) => line.startsWith("v "))
