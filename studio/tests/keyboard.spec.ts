@@ -49,7 +49,7 @@ test("everything can be done by keys alone", async ({ page, open, home }) => {
 
   // A cell is found in the tree, and subdivided.
   await panel(page, "Cells");
-  await tabTo(page, /^trunk/);
+  await tabTo(page, /^trunk\d+$/);
   for (const key of ["ArrowRight", "ArrowDown", "ArrowDown", "Enter"])
     await page.keyboard.press(key);
   await expect(page.getByRole("treeitem", { selected: true })).toHaveCount(1);
@@ -59,7 +59,6 @@ test("everything can be done by keys alone", async ({ page, open, home }) => {
   expect((await documentOf(page)).figures.cells).toBeGreaterThan(before.figures.cells);
 
   // What is selected now is copied as a patch, and set at all anchors.
-  await page.keyboard.press("]");
   await panel(page, "Graft");
   await tabTo(page, /^Name/);
   await page.keyboard.press("Control+a");
@@ -70,7 +69,6 @@ test("everything can be done by keys alone", async ({ page, open, home }) => {
   await page.keyboard.press("Enter");
   await tabTo(page, /^To/);
   await page.keyboard.type("all anchors");
-  await expect(page.locator(".panel-graft").getByText(/places|alert/)).toBeVisible();
   await expect(page.locator(".comparison")).toBeVisible();
   await tabTo(page, /^Apply$/);
   await page.keyboard.press("Enter");

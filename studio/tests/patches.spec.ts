@@ -1,6 +1,14 @@
 // Patches: turned over, renamed, deleted; and what is refused, with the engine's own words.
 import type { Page } from "@playwright/test";
-import { anchorPlace, clickCellAbove, converged, documentOf, expect, test } from "./studio";
+import {
+  anchorPlace,
+  cellAbove,
+  clickCellAbove,
+  converged,
+  documentOf,
+  expect,
+  test,
+} from "./studio";
 
 const card = (page: Page, name: string) => page.locator(".patch", { hasText: name });
 
@@ -39,12 +47,14 @@ test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
   const { position, figures } = await documentOf(page);
 
   // Set elsewhere as it is, and turned over: the divided child lies on the other side.
+  const target = await cellAbove(page, await anchorPlace(page, "A3"));
   const placed = async (mirror: boolean) => {
     await page.getByRole("button", { name: "Graft askew" }).click();
     await page.getByRole("combobox", { name: "To", exact: true }).selectOption("one");
     const button = page.getByRole("button", { name: "Mirror", exact: true });
     if (((await button.getAttribute("aria-pressed")) === "true") !== mirror) await button.click();
-    await clickCellAbove(page, await anchorPlace(page, "A9"));
+    await page.mouse.move(target.x + 1, target.y);
+    await page.mouse.click(target.x, target.y);
     await expect(page.locator(".comparison")).toBeVisible();
     await page.locator(".panel-graft").getByRole("button", { name: "Apply" }).click();
     await expect.poll(async () => (await documentOf(page)).position).toBe(position + 1);

@@ -99,14 +99,24 @@ export async function undoTo(page: Page, position: number): Promise<void> {
   }
 }
 
-/** Moves the pointer up from a place until it is on a cell, and clicks it. */
-export async function clickCellAbove(page: Page, place: { x: number; y: number }): Promise<void> {
+/** Moves the pointer up from a place until it is on a cell; returns where that is [px]. */
+export async function cellAbove(
+  page: Page,
+  place: { x: number; y: number },
+): Promise<{ x: number; y: number }> {
   const card = page.locator(".hover-card");
   for (let up = 45; up < 200; up += 7) {
     await page.mouse.move(place.x, place.y - up);
     await nextPicture(page);
-    if ((await card.count()) && (await card.textContent())?.startsWith("Cell")) break;
+    if ((await card.count()) && (await card.textContent())?.startsWith("Cell"))
+      return { x: place.x, y: place.y - up };
   }
+  throw new Error("there is no cell above");
+}
+
+/** Moves the pointer up from a place until it is on a cell, and clicks it. */
+export async function clickCellAbove(page: Page, place: { x: number; y: number }): Promise<void> {
+  await cellAbove(page, place);
   await page.mouse.down();
   await page.mouse.up();
 }

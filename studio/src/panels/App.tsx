@@ -136,6 +136,13 @@ function useNotices(): void {
   }, [notice]);
 }
 
+function isTextField(target: EventTarget | null): boolean {
+  return (
+    target instanceof HTMLTextAreaElement ||
+    (target instanceof HTMLInputElement && !["checkbox", "range", "file"].includes(target.type))
+  );
+}
+
 function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, working: boolean): void {
   const state = useStudio((all) => all.document !== null);
   useEffect(() => {
@@ -148,6 +155,8 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       const global = command.id === "keys" || command.id === "theme";
       if (!global && !(working && state)) return;
       if (typing && !event.ctrlKey && !event.metaKey) return;
+      // In a field these mean its text.
+      if (/^[acvxyz]$/i.test(event.key) && isTextField(event.target)) return;
       // Space and Enter press a focused button; they are not meant for the net then.
       if (
         (event.key === " " || event.key === "Enter") &&
