@@ -77,9 +77,7 @@ def read_text(path: str | os.PathLike[str], kind: type[InputError] = InputError)
     return decoded(data, path, kind)
 
 
-def decoded(
-    data: bytes, path: str | os.PathLike[str], kind: type[InputError] = InputError
-) -> str:
+def decoded(data: bytes, path: str | os.PathLike[str], kind: type[InputError] = InputError) -> str:
     """Return what a file holds as text (a byte order mark is dropped, line ends are kept).
 
     Raises `kind` with the line: it is not UTF-8. `path` is what the error names.

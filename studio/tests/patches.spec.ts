@@ -33,7 +33,8 @@ test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
   await page.getByRole("tab", { name: "Cells" }).click();
   const children = page.getByRole("treeitem", { selected: true }).filter({ hasText: /^\d+\.\d/ });
   const face = (await children.first().textContent())!.split(".")[0];
-  await children.first().click();
+  // Not the one at the anchor, which lies on the mirror.
+  await children.nth(1).click();
   await expect(children).toHaveCount(1);
   await page.keyboard.press("s");
   await expect.poll(async () => (await documentOf(page)).position).toBe(2);
@@ -47,7 +48,9 @@ test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
   const { position, figures } = await documentOf(page);
 
   // Set elsewhere as it is, and turned over: the divided child lies on the other side.
-  const target = await cellAbove(page, await anchorPlace(page, "A3"));
+  // Beside the springs that run up from the anchor.
+  const other = await anchorPlace(page, "A2");
+  const target = await cellAbove(page, { x: other.x + 14, y: other.y });
   const placed = async (mirror: boolean) => {
     await page.getByRole("button", { name: "Graft askew" }).click();
     await page.getByRole("combobox", { name: "To", exact: true }).selectOption("one");
@@ -64,12 +67,14 @@ test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
     await page.getByRole("tab", { name: "Cells" }).click();
     const chosen = page.getByRole("treeitem", { selected: true });
     await expect(chosen.first()).toBeVisible();
-    const deep = (await chosen.allTextContents()).find((text) => /^\d+\.\d\.\d/.test(text))!;
+    // The child that is divided again stands there with its number of cells.
+    const deep = chosen.filter({ hasText: /^\d+\.\d4$/ });
+    const child = (await deep.textContent())!.split(".")[1][0];
     await page.getByRole("tab", { name: "Graft", exact: true }).click();
     await page.getByRole("button", { name: "Undo", exact: true }).click();
     await expect.poll(async () => (await documentOf(page)).position).toBe(position);
     await converged(page);
-    return Number(deep.split(".")[1]);
+    return child;
   };
   const plain = await placed(false);
   const mirrored = await placed(true);

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,6 +34,9 @@ _INDIVIDUALS = 2_500
 
 _GENERATIONS = 20
 
+_CHROMIUM = "/usr/bin/chromium"
+"""Where it is unless `CHROMIUM` says otherwise, as in `studio/playwright.config.ts`."""
+
 _PHASES = {
     "asked": ("page: pointer to request", "the pointer's queue in Chromium, and the page's work"),
     "waited": ("engine: waiting", "until the step under way is done"),
@@ -47,6 +51,23 @@ _PHASES = {
 def available() -> bool:
     """Return whether the sources of the studio are known."""
     return bool(os.environ.get("SPRINGFORM_STUDIO"))
+
+
+def check() -> None:
+    """Check that a window can be measured, if it is to be.
+
+    Raises `InputError`: Node.js or Chromium is not there.
+    """
+    if not available():
+        return
+    if shutil.which("npx") is None:
+        raise InputError("a window needs Node.js 20 or newer; install it so that `npx` is found")
+    chromium = os.environ.get("CHROMIUM", _CHROMIUM)
+    if shutil.which(chromium) is None:
+        raise InputError(
+            f"a window needs Chromium, and {chromium} is none; install it (Debian: chromium), "
+            "or name it in CHROMIUM"
+        )
 
 
 def page(case: str, bench: Bench, pulled: Design, large: Design) -> Iterator[Row]:
@@ -86,18 +107,14 @@ def _measured(folder: Path, bench: Bench, pulled: Design, large: Design) -> dict
     (folder / "wanted.json").write_text(json.dumps(wanted), encoding="utf-8")
     environment = os.environ | {"SPRINGFORM_MEASURE": str(folder / "wanted.json")}
     command = ["npx", "playwright", "test", "--project", "measures"]
-    try:
-        done = subprocess.run(
-            command,
-            cwd=os.environ["SPRINGFORM_STUDIO"],
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    except OSError as error:
-        problem = f"Node.js can't be run: {error.strerror}; install it so that `npx` is found"
-        raise InputError(problem) from None
+    done = subprocess.run(
+        command,
+        cwd=os.environ["SPRINGFORM_STUDIO"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if done.returncode != 0 or not out.exists():
         said = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         reason = next((line for line in said if "rror" in line), said[-1] if said else "nothing")
