@@ -1,7 +1,7 @@
 """A window of the studio in Chromium: what `studio/tests/measures.ts` measures there, as rows.
 
-It needs the sources of the studio with their packages, which `SPRINGFORM_STUDIO` names; `make bench`
-sets it.
+It needs the sources of the studio with their packages, which `SPRINGFORM_STUDIO` names;
+`make bench` sets it.
 """
 
 from __future__ import annotations
