@@ -30,6 +30,9 @@ BENCH_PACKAGES := $(BENCH)/packages.stamp
 BASE ?= HEAD
 MOST ?= 1.02
 
+# The case `studio` measures a window in Chromium, too.
+BENCH_PAGE := $(if $(filter default all studio,$(or $(CASES),default)),chromium $(STUDIO_PAGE))
+
 # What a machine must have is checked before anything is built, and said in one line.
 ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   ifeq ($(shell command -v cargo),)
@@ -40,7 +43,7 @@ ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
   ifneq ($(shell $(or $(BASE_PYTHON),false) -c 'import sys; print(sys.version_info >= (3, 11))' 2> /dev/null),True)
     $(error springFORM needs Python 3.11 or newer, $(PYTHON) is not: name another with PYTHON=python3.12)
   endif
-  ifneq ($(filter setup test lint format messages screenshots feel,$(MAKECMDGOALS)),)
+  ifneq ($(filter setup test lint format messages screenshots $(if $(BENCH_PAGE),bench),$(MAKECMDGOALS)),)
     ifneq ($(shell node -p 'process.versions.node.split(".")[0] >= 20' 2> /dev/null),true)
       $(error the studio needs Node.js 20 or newer with npm: install them so that `node` is found, then try again)
     endif
@@ -75,7 +78,7 @@ test: calculix chromium $(PACKAGE) $(STUDIO_PAGE) # run the tests of the crates,
 	pytest -n 2
 	cd studio && npx playwright test --project studio
 
-# Programs that tests need besides Rust, Python and Node.js; where it may, `make test` gets them by itself.
+# Programs that tests and benchmarks need besides Rust, Python and Node.js; where it may, `make` gets them by itself.
 .PHONY: calculix
 calculix:
 	@$(call get,ccx,CalculiX,calculix-ccx)
@@ -90,10 +93,10 @@ if command -v $(1) > /dev/null; then exit; fi
 	as_root=
 	[ "$$(id -u)" = 0 ] || as_root="sudo --non-interactive"
 	if ! { command -v apt-get && $$as_root true; } &> /dev/null; then
-		echo "the tests need $(2): install it (Debian: $(3)) so that \`$(1)\` is found, then try again" >&2
+		echo "$(2) is needed: install it (Debian: $(3)) so that \`$(1)\` is found, then try again" >&2
 		exit 1
 	fi
-	echo "installing $(2) for the tests …"
+	echo "installing $(2) …"
 	$$as_root apt-get update -qq
 	$$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qq --yes --no-install-recommends $(3) > /dev/null
 endef
@@ -111,8 +114,9 @@ lint: $(PACKAGE) $(STUDIO_MODULES) # check layout, lints, types, layers and gene
 	cd studio && npx biome check --error-on-warnings && npx tsc
 
 .PHONY: bench
-bench: $(PACKAGE) $(REFERENCE) $(BENCH_PACKAGES) # time springFORM beside CHOLMOD and other engines; CASES="growth threads"
-	@SPRINGFORM_REFERENCE=$(REFERENCE) $(BENCH)/venv/bin/python -c "from springform.cli import main; main()" \
+bench: $(BENCH_PAGE) $(PACKAGE) $(REFERENCE) $(BENCH_PACKAGES) # time springFORM beside CHOLMOD and other engines; CASES="growth threads"
+	@SPRINGFORM_REFERENCE=$(REFERENCE) SPRINGFORM_STUDIO=$(CURDIR)/studio \
+	    $(BENCH)/venv/bin/python -c "from springform.cli import main; main()" \
 	    bench $(CASES) --out $(RESULTS) --label "$$(git describe --always --dirty 2> /dev/null || echo unknown)"
 
 .PHONY: stages
@@ -146,10 +150,6 @@ pictures: demo # make the pictures of the README
 .PHONY: screenshots
 screenshots: chromium $(PACKAGE) $(STUDIO_PAGE) # take the pictures of the studio
 	@cd studio && npx playwright test --project pictures
-
-.PHONY: feel
-feel: chromium $(PACKAGE) $(STUDIO_PAGE) # time picking and pulling in a window of the studio
-	@cd studio && npx playwright test --project measures
 
 .PHONY: lock
 lock: # renew Cargo.lock and requirements.lock

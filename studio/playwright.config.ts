@@ -14,7 +14,7 @@ export default defineConfig({
     { name: "studio", testMatch: "*.spec.ts" },
     // Not a test: `make screenshots` takes the pictures of the documentation.
     { name: "pictures", testMatch: "pictures.ts" },
-    // Not tests either: `make feel` prints how long picking and pulling take.
+    // Nor is this: `make bench CASES=studio` has a window measured.
     { name: "measures", testMatch: "measures.ts" },
   ],
   use: {

@@ -231,6 +231,30 @@ def test_cases_run(case: str) -> None:
         assert all("the same on any threads" in row["note"] for row in rows)
 
 
+def test_a_window_is_measured_in_chromium(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPRINGFORM_STUDIO", str(ROOT / "studio"))
+    rows = in_process("bench", "studio", "--quick", "--json").report["cases"]["studio"]
+    found = {(row["net"].split(",")[0], row["engine"], row["figure"]): row for row in rows}
+    parts = [engine for net, engine, figure in found if figure == "ms, 95 %"]
+    assert len(parts) == 6
+    late = found["three-cylinders", "page", "ms to new positions, 95 %"]
+    for engine in ("page: pointer to request", "engine: step", "page: decode and apply"):
+        part = found["three-cylinders", engine, "ms, 95 %"]
+        assert part["springs"] == late["springs"]
+        assert part["maximum"] > 0
+    assert found["canopy", "page", "elements at most"]["maximum"] < 500
+
+
+def test_without_chromium_there_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("SPRINGFORM_STUDIO", str(ROOT / "studio"))
+    monkeypatch.setenv("CHROMIUM", str(tmp_path / "no-chromium"))
+    assert_refused(in_process("bench", "studio", "--quick"), "Chromium", "no-chromium")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert_refused(in_process("bench", "studio", "--quick"), "Node.js")
+
+
 def test_words_are_printed_without_json() -> None:
     result = in_process("bench", "stream", "--quick")
     assert result.code == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import springform as sf
 from helpers import assert_refused, assert_untouched, in_process
+from springform.curve_file import curve_in
 
 POINTS = [[0.0, 0.0], [0.1, 1.15], [0.2, 1.92], [0.4, 2.95]]
 PLAIN = "strain,force [N]\n0,0\n0.1,1.15\n0.2,1.92\n0.4,2.95\n"
@@ -51,6 +53,17 @@ def test_units_and_layouts(text: str, tmp_path: Path) -> None:
     path = tmp_path / "cord.csv"
     path.write_text(text, newline="")
     np.testing.assert_allclose(sf.Curve.read(path).points, POINTS, rtol=1e-14)
+
+
+def test_what_a_file_holds_is_read_as_the_file() -> None:
+    assert np.allclose(curve_in(PLAIN.encode(), "cord.csv"), POINTS)
+    for data, problem in (
+        (b"", "cord.csv: is empty"),
+        (b"strain,force [N]\n0,x\n", 'cord.csv:2: the force is "x"; write a finite number'),
+        (b"strain,force [N]\n\xff,1\n", "cord.csv:2: byte 0xff is not UTF-8 text"),
+    ):
+        with pytest.raises(sf.InputError, match=re.escape(problem)):
+            curve_in(data, "cord.csv")
 
 
 def test_the_origin_is_added_between_pushes_and_pulls(tmp_path: Path) -> None:

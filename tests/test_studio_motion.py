@@ -52,6 +52,9 @@ def test_it_ends_at_the_equilibrium_of_the_direct_solver(watch: Watch) -> None:
     watch.motion.take(divided, 2)
     states = watch.until_settled()
     assert len(states) > 10  # it moved there, before one's eyes
+    assert states[0].waited > 0  # for the change that it follows
+    assert all(state.waited == 0 for state in states[1:])
+    assert all(state.took > 0 for state in states)
     equilibrium = divided.solve()
     assert states[-1].converged
     np.testing.assert_allclose(states[-1].positions, equilibrium.positions, atol=1e-8)

@@ -94,6 +94,23 @@ def test_what_can_not_be_opened_says_why(server: Server) -> None:
     assert "toml" in json.loads(answer)["problem"]
 
 
+def test_a_curve_is_read_or_refused_with_its_line(server: Server) -> None:
+    def read(body: str, name: str = "cord.csv") -> tuple[int, dict[str, Any]]:
+        path = f"{server.path('/api/curve')}&name={name}"
+        status, answer = server.get(path, method="POST", body=body)
+        return status, json.loads(answer)
+
+    status, curve = read("strain [%];force [N]\n0;0\n10;1,5\n")
+    assert (status, curve) == (200, {"strains": [0.0, 0.1], "forces": [0.0, 1.5]})
+    assert read("strain,force [N]\n0,0\n1,-\n") == (
+        422,
+        {"problem": 'cord.csv:3: the force is "-"; write a finite number'},
+    )
+    status, refusal = read("#" * (2**20 + 1))
+    assert status == 422
+    assert "larger than 1 MiB" in refusal["problem"]
+
+
 def test_a_model_is_what_the_command_line_writes(server: Server, tmp_path: Path) -> None:
     def exported(name: str) -> bytes:
         status, body = server.get(server.path(f"/api/documents/{server.document}/export/{name}"))

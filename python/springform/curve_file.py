@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from . import _core
 from .errors import InputError
-from .files import read_text
+from .files import decoded, read_text
 from .wording import shown
 
 _STRAIN_UNITS = {"": 1.0, "-": 1.0, "1": 1.0, "m/m": 1.0, "mm/mm": 1.0, "%": 1e-2, "mm/m": 1e-3}
@@ -30,11 +30,20 @@ def read_curve(
     passed over. Raises an error of `kind`, with the line: no such file, columns or units, no
     number, points that are none of a cord.
     """
-    return _Reader(os.fspath(path), kind).points()
+    return _Reader(read_text(path, kind), os.fspath(path), kind).points()
+
+
+def curve_in(data: bytes, name: str) -> list[tuple[float, float]]:
+    """Return the test points in what a CSV file holds, as `read_curve` does.
+
+    Raises `InputError` as there; `name` is what it calls the file.
+    """
+    return _Reader(decoded(data, name), name, InputError).points()
 
 
 class _Reader:
-    def __init__(self, path: str, kind: type[InputError]) -> None:
+    def __init__(self, text: str, path: str, kind: type[InputError]) -> None:
+        self._text = text
         self._path = path
         self._kind = kind
 
@@ -59,10 +68,9 @@ class _Reader:
 
     def _rows(self) -> Iterator[Row]:
         """Yield the rows with something in them; a row that begins with # is a remark."""
-        text = read_text(self._path, self._kind)
         lines = [
             (number, line)
-            for number, line in enumerate(text.splitlines(), start=1)
+            for number, line in enumerate(self._text.splitlines(), start=1)
             if line.strip() and not line.lstrip().startswith("#")
         ]
         heading = lines[0][1] if lines else ""

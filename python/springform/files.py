@@ -74,6 +74,14 @@ def read_text(path: str | os.PathLike[str], kind: type[InputError] = InputError)
     if len(data) > _LARGEST_TEXT:
         limit = _LARGEST_TEXT // 2**20
         raise kind(f"cannot be read: it is larger than {limit} MiB; check the file", file=path)
+    return decoded(data, path, kind)
+
+
+def decoded(data: bytes, path: str | os.PathLike[str], kind: type[InputError] = InputError) -> str:
+    """Return what a file holds as text (a byte order mark is dropped, line ends are kept).
+
+    Raises `kind` with the line: it is not UTF-8. `path` is what the error names.
+    """
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

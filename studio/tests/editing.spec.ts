@@ -1,26 +1,17 @@
-// Editing while the net moves: laws, supports, density, filters; sections and files for others.
-import { readFileSync } from "node:fs";
-import type { Page } from "@playwright/test";
+// Editing while the net moves: laws, supports, density, filters; sections.
 import * as THREE from "three";
 import type { Motion } from "../src/document/motion";
 import type { Net } from "../src/document/net";
 import type { Section } from "../src/document/section";
 import { Projection, pick } from "../src/viewport/picking";
 import { MIDDLING, pictureOf, STRONGEST } from "./picture";
-import { anchorPlace, converged, documentOf, expect, test } from "./studio";
-
-async function download(page: Page, item: string | RegExp): Promise<Buffer> {
-  await page.getByRole("button", { name: /^Document/ }).click();
-  const coming = page.waitForEvent("download");
-  await page.getByRole("menuitem", { name: item }).click();
-  return readFileSync(await (await coming).path());
-}
+import { anchorPlace, converged, documentOf, expect, still, test } from "./studio";
 
 test("the law of a cylinder is changed while the net moves, and taken back", async ({
   page,
-  open,
+  visit,
 }) => {
-  await open("three-cylinders");
+  await visit("three-cylinders");
   const before = await documentOf(page);
   await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
   await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("axial_stiffness");
@@ -45,8 +36,8 @@ test("the law of a cylinder is changed while the net moves, and taken back", asy
   expect((await documentOf(page)).figures).toEqual(before.figures);
 });
 
-test("every law can be given, and what is refused is said", async ({ page, open }) => {
-  await open("one-cylinder");
+test("every law can be given, and what is refused is said", async ({ page, visit }) => {
+  await visit("one-cylinder");
   const laws: [key: string, says: RegExp][] = [
     ["axial_stiffness", /^EA = .* N · L0 = 0\.8 × drawn$/],
     ["force_density", /^q = .* N\/m$/],
@@ -66,12 +57,12 @@ test("every law can be given, and what is refused is said", async ({ page, open 
   expect((await documentOf(page)).position).toBe(laws.length);
 });
 
-test("colours follow forces, not shapes", async ({ page, open }) => {
-  await open("three-cylinders");
+test("colours follow forces, not shapes", async ({ page, visit }) => {
+  await visit("three-cylinders");
   await page.getByRole("button", { name: "Scale and palette" }).click();
   await page.getByLabel("Range").selectOption("fixed");
   await page.keyboard.press("Escape");
-  await page.waitForTimeout(600);
+  await still(page);
   const before = await pictureOf(page);
   const positions = (await documentOf(page)).figures;
   const stiffness = page.getByLabel("Stiffness k, F = k L");
@@ -79,7 +70,7 @@ test("colours follow forces, not shapes", async ({ page, open }) => {
   await stiffness.press("Enter");
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
   await converged(page);
-  await page.waitForTimeout(600);
+  await still(page);
   const doubled = (await documentOf(page)).figures;
   expect(doubled.force_max).toBeCloseTo(2 * positions.force_max, 6);
   expect(doubled.total_length).toBeCloseTo(positions.total_length, 6);
@@ -87,8 +78,8 @@ test("colours follow forces, not shapes", async ({ page, open }) => {
   expect(after.share(STRONGEST, 60)).toBeGreaterThan(3 * before.share(STRONGEST, 60));
 });
 
-test("an anchor slides, and is dragged along an arm", async ({ page, open }) => {
-  await open("three-cylinders");
+test("an anchor slides, and is dragged along an arm", async ({ page, visit }) => {
+  await visit("three-cylinders");
   const anchorOf = async (name: string) =>
     (await documentOf(page)).anchors.find((anchor) => anchor.name === name)!;
   const before = await anchorOf("A7");
@@ -119,8 +110,8 @@ test("an anchor slides, and is dragged along an arm", async ({ page, open }) => 
   await expect.poll(async () => (await documentOf(page)).anchors.length).toBe(11);
 });
 
-test("density and filters are looked at before they are applied", async ({ page, open }) => {
-  await open("three-cylinders-quad");
+test("density and filters are looked at before they are applied", async ({ page, visit }) => {
+  await visit("three-cylinders-quad");
   const before = await documentOf(page);
   const finer = page.getByRole("button", { name: "Finer: trunk" });
   await finer.hover();
@@ -144,19 +135,22 @@ test("density and filters are looked at before they are applied", async ({ page,
   await expect.poll(async () => (await documentOf(page)).method).toBe("recursive");
 });
 
-test("a section takes half of the net away, and the rest can be picked", async ({ page, open }) => {
-  await open("three-cylinders");
-  await page.waitForTimeout(600);
+test("a section takes half of the net away, and the rest can be picked", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  await still(page);
   const whole = await pictureOf(page);
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("k");
   await page.getByRole("button", { name: "Section across x" }).click();
   await page.mouse.move(500, 760);
-  await page.waitForTimeout(600);
+  await still(page);
   const half = await pictureOf(page);
   expect(half.lit).toBeLessThan(0.9 * whole.lit);
   await page.getByLabel("Place of the section").fill("1");
-  await page.waitForTimeout(600);
+  await still(page);
   expect((await pictureOf(page)).lit).toBeGreaterThan(half.lit);
 });
 
@@ -210,27 +204,8 @@ test("of a spring across a section the visible part is found, and no more", () =
   expect(picked({ axis: 0, share: 0.5, flipped: true }, -0.6, 1)).toBe(null);
 });
 
-test("pictures and models are written for others", async ({ page, open }) => {
-  await open("three-cylinders");
-  const { figures, anchors } = await documentOf(page);
-  await page.waitForTimeout(600);
-  const drawing = (await download(page, "Export a drawing (SVG)")).toString();
-  expect(drawing).toMatch(/^<svg xmlns/);
-  expect(drawing.match(/<line /g)).toHaveLength(figures.springs);
-  for (const { name } of anchors) expect(drawing).toContain(`>${name}</text>`);
-  expect(drawing).toContain("Force [N]");
-  expect(new Set(drawing.match(/stroke="#\w+"/g)).size).toBeGreaterThan(50);
-  const picture = await download(page, "Export a picture (PNG)");
-  expect(picture.subarray(1, 4).toString()).toBe("PNG");
-  const lines = (await download(page, /OBJ/)).toString();
-  expect(lines.match(/^l /gm)).toHaveLength(figures.springs);
-  expect((await download(page, /TOML/)).toString()).toContain('name = "three-cylinders"');
-  expect(JSON.parse((await download(page, /JSON/)).toString()).springform).toBe(1);
-  expect((await download(page, /ZIP/)).subarray(0, 2).toString()).toBe("PK");
-});
-
-test("springs of about the same force are selected and given a law", async ({ page, open }) => {
-  await open("three-cylinders");
+test("springs of about the same force are selected and given a law", async ({ page, visit }) => {
+  await visit("three-cylinders");
   const anchor = await anchorPlace(page, "A4");
   await page.mouse.click(anchor.x - 9, anchor.y - 34);
   await page.getByRole("button", { name: "Same force", exact: true }).click();
@@ -245,8 +220,8 @@ test("springs of about the same force are selected and given a law", async ({ pa
     .toEqual([{ title: `${count} springs`, says: "k = 1.5 N/m" }]);
 });
 
-test("types are given with a brush", async ({ page, open }) => {
-  await open("three-cylinders-quad");
+test("types are given with a brush", async ({ page, visit }) => {
+  await visit("three-cylinders-quad");
   const before = await documentOf(page);
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("Shift+B");

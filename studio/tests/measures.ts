@@ -1,188 +1,142 @@
-// Not a test: times what people feel in a window, and prints it. Picking in a net of 20,000 springs, and the
-// way from a pointer's move to the engine's new positions in a page (the picture is drawn in software here).
+// Not a test: `make bench CASES=studio` runs it to time what people feel in a window. Its nets and how often come
+// as a file that SPRINGFORM_MEASURE names; figures go to another. The picture is drawn by whatever Chromium has.
+import { readFileSync, writeFileSync } from "node:fs";
 import type { Page } from "@playwright/test";
-import * as THREE from "three";
-import { type Motion, motionOf } from "../src/document/motion";
-import { applyNet, type Net } from "../src/document/net";
-import { decodeFrame } from "../src/protocol/frames";
-import { Projection, pick } from "../src/viewport/picking";
-import { anchorPlace, converged, documentOf, expect, test } from "./studio";
+import { converged, expect, test } from "./studio";
+import { type Figures, watch } from "./watch";
 
-const ALL = { nodes: true, springs: true, cells: true };
-
-/** Keeps the net that a page is sent, and where it is. */
-function listen(page: Page): { net: Net | null; motion: Motion | null } {
-  const kept: ReturnType<typeof listen> = { net: null, motion: null };
-  page.on("websocket", (socket) => {
-    socket.on("framereceived", ({ payload }) => {
-      if (typeof payload === "string") return;
-      const { header, arrays } = decodeFrame(new Uint8Array(payload).buffer);
-      if (header.frame === "net") kept.net = applyNet(kept.net, header, arrays);
-      if (header.frame === "motion") kept.motion = motionOf(header, arrays);
-    });
-  });
-  return kept;
+/** What to measure. */
+interface Wanted {
+  /** Design file of the net that is pulled for its delay, and of the large one. */
+  pulled: string;
+  large: string;
+  /** Folder of the run whose individuals are scrolled through. */
+  run: string;
+  rounds: number;
+  /** Moves of the pointer in a round. */
+  moves: number;
+  /** Where the figures go. */
+  out: string;
 }
 
-async function finer(page: Page, position: number): Promise<void> {
-  await page.getByRole("button", { name: "Finer: whole net" }).click();
-  await expect.poll(async () => (await documentOf(page)).position).toBe(position);
+const wanted = JSON.parse(readFileSync(process.env.SPRINGFORM_MEASURE!, "utf8")) as Wanted;
+
+const EVERY = 1000 / 60; // ms between two moves of a pointer
+
+const figures = async (page: Page): Promise<Figures> =>
+  page.evaluate(() => (globalThis as never as { figures: Figures }).figures);
+
+/** Moves the pointer as often as a mouse does, so far as Chromium takes the moves. */
+async function wander(
+  page: Page,
+  moves: number,
+  place: (move: number) => { x: number; y: number },
+): Promise<void> {
+  let next = performance.now();
+  for (let move = 0; move < moves; move++) {
+    const { x, y } = place(move);
+    await page.mouse.move(x, y);
+    next = Math.max(next + EVERY, performance.now());
+    await page.waitForTimeout(next - performance.now());
+  }
+}
+
+/** The anchor whose name stands nearest to the middle of the canvas [px]. */
+async function anchorInSight(page: Page): Promise<{ x: number; y: number }> {
+  await page.locator(".anchor-names span").first().waitFor();
+  return page.locator("main.viewport").evaluate((viewport) => {
+    const { left, top, width, height } = viewport.getBoundingClientRect();
+    const [x, y] = [left + width / 2, top + height / 2];
+    const places = [...viewport.querySelectorAll(".anchor-names span:not([hidden])")].map(
+      (name) => {
+        const box = name.getBoundingClientRect();
+        // A name stands 9 px right of its anchor and 20 px above it.
+        return { x: box.left - 9, y: box.top + 20 };
+      },
+    );
+    const far = (place: { x: number; y: number }) => Math.hypot(place.x - x, place.y - y);
+    return places.reduce((best, place) => (far(place) < far(best) ? place : best));
+  });
+}
+
+/** Presses the button on an anchor once the net stands still [px]. */
+async function takeAnchor(page: Page): Promise<{ x: number; y: number }> {
+  let place = { x: 0, y: 0 };
   await converged(page);
-}
-
-function quantile(values: number[], share: number): number {
-  return values.sort((a, b) => a - b)[Math.ceil(share * values.length) - 1];
-}
-
-test("picking at 20,000 springs", async ({ page, open }) => {
-  const kept = listen(page);
-  await open("three-cylinders-dense");
-  await finer(page, 1);
-  await finer(page, 2);
-  const net = kept.net!;
-  const motion = kept.motion!;
-  const camera = new THREE.PerspectiveCamera(32, 1.25, 0.1, 100);
-  const look = { motion, camera, width: 900, height: 720, section: null };
-  camera.up.set(0, 0, 1);
-  camera.position.set(6, -10, 6);
-  camera.lookAt(0, 0, 2);
-  camera.updateMatrixWorld();
-  const cold: number[] = [];
-  const warm: number[] = [];
-  for (let at = 0; at < 300; at++) {
-    const [x, y] = [(at * 37) % 900, (at * 53) % 720];
-    const began = performance.now();
-    const projection = new Projection(look);
-    pick(net, projection, x, y, ALL);
-    const between = performance.now();
-    pick(net, projection, x + 1, y, ALL);
-    cold.push(between - began);
-    warm.push(performance.now() - between);
-  }
-  console.log(
-    `picking in ${net.law.length} springs, ${net.nodes.length} nodes, ${net.addresses.length} cells: ` +
-      `95 % within ${quantile(cold, 0.95).toFixed(2)} ms after the view changed, ` +
-      `${quantile(warm, 0.95).toFixed(2)} ms in a view that stays`,
-  );
-});
-
-test("a lasso in a page at 20,000 springs", async ({ page, open }) => {
-  await open("three-cylinders-dense");
-  await finer(page, 1);
-  await finer(page, 2);
-  await page.waitForTimeout(3000);
-  const springs = (await documentOf(page)).figures.springs;
-  await page.locator("main.viewport canvas").focus();
-  await page.keyboard.press("Shift+L");
-  await page.mouse.move(880, 420);
+  await expect(async () => {
+    place = await anchorInSight(page);
+    await page.mouse.move(place.x + 1, place.y);
+    await page.mouse.move(place.x, place.y);
+    await expect(page.locator(".hover-card")).toContainText("Anchor", { timeout: 2000 });
+  }).toPass();
   await page.mouse.down();
-  const { moves, drop } = await page.evaluate(lassoRound, {
-    x: 540,
-    y: 420,
-    radius: 340,
-    steps: 240,
-  });
-  const title = await page.locator(".section h2").first().textContent();
-  await page.mouse.up();
-  console.log(
-    `a lasso in ${springs} springs: 95 % of ${moves.length} moves within ${quantile(moves, 0.95).toFixed(1)} ms, ` +
-      `the slowest ${Math.max(...moves).toFixed(1)} ms; ${title} selected in ${drop.toFixed(0)} ms`,
-  );
-});
+  return place;
+}
 
-/** In the page: draws a lasso, and tells how long the page was busy with every move and with the end [ms]. */
-async function lassoRound(way: { x: number; y: number; radius: number; steps: number }) {
-  const canvas = document.querySelector("main.viewport canvas")!;
-  const point = (type: string, step: number) => {
-    const angle = (2 * Math.PI * step) / way.steps;
-    const clientX = way.x + way.radius * Math.cos(angle);
-    const clientY = way.y + way.radius * Math.sin(angle);
-    canvas.dispatchEvent(new PointerEvent(type, { clientX, clientY, bubbles: true, button: 0 }));
-  };
-  // From when the browser begins with the picture until it is done with it.
-  const picture = () =>
-    new Promise<number>((resolve) => {
-      requestAnimationFrame((began) => {
-        const { port1, port2 } = new MessageChannel();
-        port1.onmessage = () => resolve(performance.now() - began);
-        port2.postMessage(null);
-      });
+async function pull(page: Page, rounds: number, moves: number): Promise<Figures[]> {
+  const found: Figures[] = [];
+  for (let round = 0; round <= rounds; round++) {
+    const from = await takeAnchor(page);
+    await page.evaluate(() => (globalThis as never as { begin(): void }).begin());
+    await wander(page, moves, (move) => ({
+      x: from.x + 24 * Math.sin(move / 5),
+      y: from.y + 16 * Math.cos(move / 7),
+    }));
+    const measured = await figures(page);
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.up();
+    // The first round warms up.
+    if (round > 0) found.push(measured);
+  }
+  return found;
+}
+
+test("figures of a window", async ({ page, open }) => {
+  test.setTimeout(600_000);
+  await page.addInitScript(watch);
+  await open(wanted.pulled);
+  const pulled = await pull(page, wanted.rounds, wanted.moves);
+  await open(wanted.large);
+  const large = await pull(page, wanted.rounds, wanted.moves);
+
+  const hovers: number[][] = [];
+  const box = (await page.locator("main.viewport canvas").boundingBox())!;
+  for (let round = 0; round < wanted.rounds; round++) {
+    await page.evaluate(() => (globalThis as never as { begin(): void }).begin());
+    await wander(page, wanted.moves, (move) => ({
+      x: box.x + 100 + ((37 * (move + round)) % (box.width - 200)),
+      y: box.y + 100 + ((53 * (move + round)) % (box.height - 250)),
+    }));
+    hovers.push((await figures(page)).hovers);
+  }
+
+  await open(wanted.run);
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Pictures" }).click();
+  await expect(page.locator(".gallery-cell").first()).toBeVisible();
+  await page.locator(".gallery canvas").first().waitFor();
+  const individuals = /[\d,]+/.exec(
+    (await page.locator(".gallery header span").first().textContent())!,
+  )![0];
+  const gallery = await page.locator(".gallery-box").evaluate(async (scrolled, steps) => {
+    const tasks: number[] = [];
+    const observer = new PerformanceObserver((list) => {
+      for (const entry of list.getEntries()) tasks.push(entry.duration);
     });
-  const moves: number[] = [];
-  for (let step = 1; step < way.steps; step++) {
-    point("pointermove", step);
-    moves.push(await picture());
-  }
-  const began = performance.now();
-  point("pointerup", way.steps - 1);
-  const drop = performance.now() - began;
-  await picture();
-  return { moves, drop };
-}
-
-test("pointer to positions in a page at 3,000 springs", async ({ page, open }) => {
-  await page.addInitScript(watchLine);
-  await open("three-cylinders-quad");
-  await finer(page, 1);
-  const from = await anchorPlace(page, "A7");
-  await page.mouse.move(from.x, from.y);
-  await page.mouse.down();
-  for (let move = 0; move < 150; move++) {
-    await page.mouse.move(from.x + 30 * Math.sin(move / 5), from.y - 40 + 20 * Math.cos(move / 7));
-    await page.waitForTimeout(20 + (move % 7));
-  }
-  await page.mouse.up();
-  const { whole, engine } = await page.evaluate(() => (globalThis as never as Watched).figures);
-  console.log(
-    `${whole.length} moves: from the pointer's event to new positions in the page, 95 % within ` +
-      `${quantile(whole, 0.95).toFixed(1)} ms; of it from the request on ${quantile(engine, 0.95).toFixed(1)} ms`,
-  );
-});
-
-interface Watched {
-  figures: { whole: number[]; engine: number[] };
-}
-
-/** In the page: notes when the pointer moves, when the page asks, and when what it asked for is there. */
-function watchLine(): void {
-  const figures: Watched["figures"] = { whole: [], engine: [] };
-  (globalThis as never as Watched).figures = figures;
-  let moved = 0;
-  let waiting: { moved: number; sent: number; place: number[] } | null = null;
-  addEventListener(
-    "pointermove",
-    () => {
-      moved = performance.now();
-    },
-    true,
-  );
-  const { send } = WebSocket.prototype;
-  WebSocket.prototype.send = function (this: WebSocket, data) {
-    const request = typeof data === "string" ? JSON.parse(data) : {};
-    if (request.type === "hold" && !waiting)
-      waiting = { moved, sent: performance.now(), place: request.position };
-    send.call(this, data);
-  };
-  const listening = new WeakSet<WebSocket>();
-  const NativeSocket = WebSocket;
-  globalThis.WebSocket = class extends NativeSocket {
-    constructor(address: string | URL, protocols?: string | string[]) {
-      super(address, protocols);
-      if (listening.has(this)) return;
-      listening.add(this);
-      this.addEventListener("message", ({ data }) => {
-        if (!waiting || typeof data === "string") return;
-        const buffer = data as ArrayBuffer;
-        const length = new DataView(buffer).getUint32(0, true);
-        const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-        if (header.frame !== "motion" || !header.held.length) return;
-        const places = new Float32Array(buffer, 4 + length, header.arrays[0].length);
-        const at = 3 * header.held[0];
-        if (waiting.place.some((value, axis) => Math.abs(places[at + axis] - value) > 1e-4)) return;
-        figures.whole.push(performance.now() - waiting.moved);
-        figures.engine.push(performance.now() - waiting.sent);
-        waiting = null;
-      });
+    observer.observe({ type: "longtask" });
+    let elements = 0;
+    const began = performance.now();
+    for (let step = 0; step < steps; step++) {
+      scrolled.scrollTo(step * 900, (step * 37) % 1800);
+      await new Promise((next) => requestAnimationFrame(next));
+      elements = Math.max(elements, document.querySelectorAll(".gallery *").length);
     }
-  };
-}
+    const seconds = (performance.now() - began) / 1000;
+    for (const entry of observer.takeRecords()) tasks.push(entry.duration);
+    // Chromium calls a task long from 50 ms on.
+    return { elements, longest: Math.max(0, ...tasks), frames: steps / seconds };
+  }, wanted.moves);
+  const chromium = page.context().browser()!.version();
+  const all = { chromium, pulled, large, hovers, gallery: { individuals, ...gallery } };
+  writeFileSync(wanted.out, JSON.stringify(all));
+});

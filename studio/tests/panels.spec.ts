@@ -58,8 +58,8 @@ async function states(page: Page): Promise<void> {
   for (const key of ["k", "t", "v", "Escape"]) await page.keyboard.press(key);
 }
 
-test("the framework is changed by form, and what is refused says why", async ({ page, open }) => {
-  await open("one-cylinder");
+test("the framework is changed by form, and what is refused says why", async ({ page, visit }) => {
+  await visit("one-cylinder");
   const before = (await documentOf(page)).figures;
   await page.getByRole("tab", { name: "Framework" }).click();
   const level = page.getByLabel("Level: every cell subdivided");
@@ -89,8 +89,8 @@ test("the framework is changed by form, and what is refused says why", async ({ 
   await expect.poll(async () => (await documentOf(page)).figures).toEqual(before);
 });
 
-test("commands are found by name, and the menu by the right button", async ({ page, open }) => {
-  await open("one-cylinder");
+test("commands are found by name, and the menu by the right button", async ({ page, visit }) => {
+  await visit("one-cylinder");
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("Control+k");
   await page.keyboard.type("seek stress, one");
@@ -104,17 +104,4 @@ test("commands are found by name, and the menu by the right button", async ({ pa
   await page.getByRole("tab", { name: "History" }).click();
   await page.getByRole("button", { name: "Start", exact: true }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(0);
-});
-
-test("a document is saved as a file", async ({ page, open, home }) => {
-  await open("one-cylinder");
-  await page.locator("main.viewport canvas").focus();
-  await page.keyboard.press("Control+s");
-  const path = page.getByLabel("Path on this machine");
-  await path.fill(`${home}/no/such/folder/net.toml`);
-  await page.getByRole("button", { name: "Save", exact: true }).click();
-  await expect(page.getByRole("dialog").getByRole("alert")).toContainText("does not exist");
-  await path.fill(`${home}/net.toml`);
-  await page.getByRole("button", { name: "Save", exact: true }).click();
-  await expect(page.locator(".title")).toContainText("saved as net.toml");
 });

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { test as base, expect, type Page } from "@playwright/test";
-import type { DocumentState } from "../src/protocol/messages";
+import type { DocumentState, Opened, Opening } from "../src/protocol/messages";
 
 export { expect };
 
@@ -76,19 +76,85 @@ export async function anchorPlace(page: Page, name: string): Promise<{ x: number
   return { x: box.left - 9, y: box.top + 20 };
 }
 
-/** Moves the pointer up from a place until it is on a cell, and clicks it. */
-export async function clickCellAbove(page: Page, place: { x: number; y: number }): Promise<void> {
+/** Waits until the page has drawn what it knows, as finely as it does. */
+export async function still(page: Page): Promise<void> {
+  await nextPicture(page);
+  await expect(page.locator("main.viewport canvas")).toHaveAttribute("data-fine", "true");
+  await nextPicture(page);
+}
+
+/** Waits for the picture after the next one. */
+export async function nextPicture(page: Page): Promise<void> {
+  await page.evaluate(
+    () => new Promise((next) => requestAnimationFrame(() => requestAnimationFrame(next))),
+  );
+}
+
+/** Undoes until so many actions are done. */
+export async function undoTo(page: Page, position: number): Promise<void> {
+  await page.locator("main.viewport canvas").focus();
+  for (let now = (await documentOf(page)).position; now > position; now--) {
+    await page.keyboard.press("Control+z");
+    await expect.poll(async () => (await documentOf(page)).position).toBe(now - 1);
+  }
+}
+
+/** Moves the pointer up from a place until it is on a cell; returns where that is [px]. */
+export async function cellAbove(
+  page: Page,
+  place: { x: number; y: number },
+): Promise<{ x: number; y: number }> {
   const card = page.locator(".hover-card");
   for (let up = 45; up < 200; up += 7) {
     await page.mouse.move(place.x, place.y - up);
-    await page.waitForTimeout(100);
-    if ((await card.count()) && (await card.textContent())?.startsWith("Cell")) break;
+    await nextPicture(page);
+    if ((await card.count()) && (await card.textContent())?.startsWith("Cell"))
+      return { x: place.x, y: place.y - up };
   }
+  throw new Error("there is no cell above");
+}
+
+/** Moves the pointer up from a place until it is on a cell, and clicks it. */
+export async function clickCellAbove(page: Page, place: { x: number; y: number }): Promise<void> {
+  await cellAbove(page, place);
   await page.mouse.down();
   await page.mouse.up();
 }
 
-export const test = base.extend<{ home: string; open: (source?: string) => Promise<Studio> }>({
+interface Fixtures {
+  /** A folder of its own for a studio's documents. */
+  home: string;
+  /** Opens a window of a studio of its own. */
+  open: (source?: string) => Promise<Studio>;
+  /** Opens a window with a new document, in the studio that tests share. */
+  visit: (source: string) => Promise<void>;
+}
+
+export const test = base.extend<Fixtures, { shared: Studio }>({
+  shared: [
+    // biome-ignore lint/correctness/noEmptyPattern: Playwright reads what a fixture needs from the pattern
+    async ({}, use) => {
+      const home = mkdtempSync(join(tmpdir(), "springform-studio-"));
+      const studio = await startStudio(home);
+      await use(studio);
+      await studio.kill();
+      rmSync(home, { recursive: true });
+    },
+    { scope: "worker" },
+  ],
+  visit: async ({ page, shared }, use) => {
+    page.on("pageerror", (error) => {
+      throw error;
+    });
+    await use(async (source) => {
+      const { origin, search } = new URL(shared.address);
+      const data = { source } satisfies Opening;
+      const response = await page.request.post(`${origin}/api/documents${search}`, { data });
+      const { id } = (await response.json()) as Opened;
+      await page.goto(`${origin}/${search}#${id}`);
+      await converged(page);
+    });
+  },
   // biome-ignore lint/correctness/noEmptyPattern: Playwright reads what a fixture needs from the pattern
   home: async ({}, use) => {
     const home = mkdtempSync(join(tmpdir(), "springform-studio-"));

@@ -15,7 +15,18 @@ from pathlib import Path
 from ..errors import InputError
 from ..files import WriteError, explain
 from ..wording import nearest
-from . import equilibria, individuals, large, machine, peers, reference, runs, scikit_sparse, studio
+from . import (
+    equilibria,
+    individuals,
+    large,
+    machine,
+    page,
+    peers,
+    reference,
+    runs,
+    scikit_sparse,
+    studio,
+)
 from .comparison import Bench
 from .records import Row, write_csv
 from .timing import Effort
@@ -88,10 +99,12 @@ def run(
     """Measure cases one after the other; yield each when it is done.
 
     With `out`, each case's rows are written to OUT/MACHINE/CASE.csv as soon as it is done, whole or
-    not at all; `label` says there which code was timed. Raises `InputError`: an unknown case, or
-    a folder that can't be written; both before anything is measured.
+    not at all; `label` says there which code was timed. Raises `InputError`: an unknown case, a
+    folder that can't be written, or no browser for the case `studio`; before anything is measured.
     """
     cases = chosen(names)
+    if "studio" in cases:
+        page.check()
     folder = None if out is None else _folder(Path(out) / machine.slug())
     return _measured(cases, Bench() if bench is None else bench, folder, label, on_row)
 

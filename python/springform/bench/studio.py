@@ -1,6 +1,7 @@
-"""The studio without its drawing: how soon a net follows the hand, and how often it is told.
+"""The studio: how soon a net follows the hand, and how often it is told.
 
-A server in a process of its own, and a client that speaks with it as a window does.
+A server in a process of its own, a client that speaks with it as a window does but draws nothing,
+and, where it can be had, a window in Chromium.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from ..arrays import Floats
 from ..design import Design, save
+from . import page
 from .comparison import Bench
 from .nets import evolved, large_design
 from .records import Row
@@ -63,7 +65,8 @@ def studio(case: str, bench: Bench) -> Iterator[Row]:
             Spread.of([1e3 * seconds for seconds in slowest]),
             note=note,
         )
-    with _window(large_design(bench.springs(STREAMED))) as window:
+    large = large_design(bench.springs(STREAMED))
+    with _window(large) as window:
         window.pull(0.5)
         paces = [window.pull(_SECONDS) for _ in range(rounds)]
         note = f"frames while a node is pulled 60 times a second, {window.size / 1024:.0f} kB each"
@@ -76,6 +79,8 @@ def studio(case: str, bench: Bench) -> Iterator[Row]:
             Spread.of(paces),
             note=note,
         )
+    if page.available():
+        yield from page.page(case, bench, net, large)
 
 
 @contextmanager

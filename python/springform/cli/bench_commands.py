@@ -39,7 +39,7 @@ def bench_command(
     """Time springFORM beside CHOLMOD and whatever other engines are installed."""
     # No other command is to wait for what only this one needs.
     from .. import bench  # noqa: PLC0415
-    from ..bench import machine, reference  # noqa: PLC0415
+    from ..bench import machine, page, reference  # noqa: PLC0415
 
     names = bench.chosen(cases or [])
     settings = bench.Bench()
@@ -58,6 +58,8 @@ def bench_command(
     results = bench.run(names, bench=settings, out=out, label=label, on_row=show)
     if not reference.available():
         say("no ratios: the reference has not been built, which `make bench` does")
+    if "studio" in names and not page.available():
+        say("no window is measured: `make bench CASES=studio` does it, in Chromium")
     found: dict[str, list[dict[str, object]]] = {}
     try:
         for result in results:

@@ -32,6 +32,14 @@ class SetSprings(Message):
     """By the keys of `springs.groups`; null takes back what was said of these springs."""
 
 
+class CurvePoints(Message):
+    """A measured curve, as it was read from a CSV file."""
+
+    strains: list[float]
+    forces: list[float]
+    """Of every test point [N]."""
+
+
 class DropSprings(Message):
     """Take back all that a group says of its springs."""
 

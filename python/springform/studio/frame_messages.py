@@ -52,6 +52,10 @@ class MotionHeader(Message):
     reason: str
     held: list[int]
     """Nodes that are dragged."""
+    waited: float
+    """From the change that it follows until its step began [s]; 0 of later steps."""
+    took: float
+    """What its step took [s]."""
     arrays: list[ArrayHeader]
 
 

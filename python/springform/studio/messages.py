@@ -15,7 +15,7 @@ from pydantic import Field, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from .changes import Place
-from .editing_messages import DropSprings, SetDensity, SetSprings, SpringGroupLine
+from .editing_messages import CurvePoints, DropSprings, SetDensity, SetSprings, SpringGroupLine
 from .figure_messages import Figures
 from .frame_messages import Frame
 from .graft_messages import (
@@ -396,6 +396,7 @@ class Protocol(_Message):
     clusters: Clusters
     comparing: Comparing
     compared: Compared
+    curve: CurvePoints
 
 
 class _PlainSchema(GenerateJsonSchema):

@@ -6,7 +6,7 @@ import copy
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -60,6 +60,10 @@ class State:
     reason: str
     held: tuple[int, ...]
     """Nodes that are dragged."""
+    waited: float = 0.0
+    """From the change that it follows until its step began [s]; 0 of later steps."""
+    took: float = 0.0
+    """What its step took [s]."""
 
 
 class Motion:
@@ -76,6 +80,7 @@ class Motion:
         self._holds: dict[object, tuple[str, Floats]] = {}
         self._running = True
         self._disturbed = False
+        self._disturbed_at = 0.0
         self._placed = 0
         self._single_steps = 0
         self._closed = False
@@ -135,6 +140,7 @@ class Motion:
 
     def _disturb(self) -> None:
         self._disturbed = True
+        self._disturbed_at = time.perf_counter()
         self._changed.notify()
 
     # --- in the thread -------------------------------------------------------------------------
@@ -147,8 +153,9 @@ class Motion:
                 self._wait(next_step if moving else None)
                 if self._closed:
                     return
+                began, waited = time.perf_counter(), 0.0
                 if self._disturbed:
-                    self._disturbed = False
+                    self._disturbed, waited = False, began - self._disturbed_at
                     steps = self._motion()
                 self._single_steps = max(self._single_steps - 1, 0)
                 placed = self._placed
@@ -157,7 +164,8 @@ class Motion:
             moving = False
             if state is not None and self._keep(state, placed):
                 moving = state.running and not state.settled
-                self._tell(state)
+                took = time.perf_counter() - began
+                self._tell(replace(state, waited=waited, took=took))
 
     def _wait(self, until: float | None) -> None:
         """Wait until it is time for a step, or something changes; the lock is held."""

@@ -23,9 +23,11 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .. import _core, scenes
+from ..curve_file import curve_in
 from ..design import load
 from ..errors import InputError
 from .address import Address, keep_address, last_address
+from .editing_messages import CurvePoints
 from .exports import export
 from .folders import folder_at
 from .library import Library
@@ -46,6 +48,8 @@ _LARGEST_MESSAGE = 4 * 2**20
 """Bytes of a request [B]; beyond it the window is cut off."""
 
 _SIDE: TypeAdapter[Side] = TypeAdapter(Side)
+_LARGEST_CURVE = 2**20
+"""Bytes of a CSV file with a measured curve [B]."""
 
 _POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -137,6 +141,7 @@ def application(library: Library, token: str, port: int) -> Starlette:
                 _answering(_lineage),
             ),
             Route("/api/scenes/{scene}/picture", _answering(_scene_picture)),
+            Route("/api/curve", _answering(_curve), methods=["POST"]),
             WebSocketRoute("/api/documents/{document}/socket", _socket),
             Mount("/", StaticFiles(directory=STATIC, check_dir=False)),
         ],
@@ -403,6 +408,17 @@ async def _scene_picture(request: Request) -> Response:
     name = request.path_params["scene"]
     scenes.load_scene(name)
     return Response(await studio.picture(name), media_type="application/octet-stream")
+
+
+async def _curve(request: Request) -> CurvePoints:
+    name = request.query_params.get("name", "the file")
+    data = bytearray()
+    async for part in request.stream():
+        data += part
+        if len(data) > _LARGEST_CURVE:
+            raise InputError("is larger than 1 MiB; leave out points", file=name)
+    strains, forces = zip(*curve_in(bytes(data), name), strict=True)
+    return CurvePoints(strains=list(strains), forces=list(forces))
 
 
 async def _socket(socket: WebSocket) -> None:

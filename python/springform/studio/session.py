@@ -230,6 +230,10 @@ class Session:
             case ListPatches() | CopyPatch() | RenamePatch() | DeletePatch():
                 async with self._order:
                     await self._file_patch(request)
+            case Pin() | Unpin():
+                async with self._order:
+                    await self._in_thread(lambda: self._pin(request))
+                    self._tell_all(self.pins.state())
             case _:
                 async with self._order:
                     return await self._change(request), None
@@ -257,10 +261,6 @@ class Session:
                 return []
             case MoveAnchor() if self._live.live is not None:
                 self._live.move_anchor(request.anchor, request.position)
-                return []
-            case Pin() | Unpin():
-                await self._in_thread(lambda: self._pin(request))
-                self._tell_all(self.pins.state())
                 return []
             case Look():
                 self.runs.following = False

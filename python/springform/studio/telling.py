@@ -52,6 +52,8 @@ def motion_frame(state: State, design: Design) -> bytes:
         residual=residual if np.isfinite(residual) else None,
         reason=state.reason,
         held=list(state.held),
+        waited=state.waited,
+        took=state.took,
         arrays=[],
     )
     with np.errstate(over="ignore"):

@@ -1,4 +1,5 @@
 // The colours of all springs, and the legend that explains them.
+import { type Conditions, conditionOf, conditionsOf } from "./conditions";
 import type { Motion } from "./motion";
 import type { Net } from "./net";
 import {
@@ -26,6 +27,8 @@ export interface Colouring {
   /** Red, green, blue, (3 m). */
   colours: Uint8Array;
   legend: ScaleLegend | KindLegend;
+  /** What the form of springs tells. */
+  conditions: Conditions;
 }
 
 export interface ScaleLegend {
@@ -34,19 +37,14 @@ export interface ScaleLegend {
   /** Smallest and largest value of all springs. */
   least: number;
   most: number;
-  slack: number;
   /** Springs that don't have it, such as strain without an unstressed length. */
   none: number;
-  broken: number;
 }
 
 export interface KindLegend {
   shows: "kinds";
   entries: { name: string; colour: Colour; count: number }[];
 }
-
-/** A force below this share of the largest counts as none. */
-const SLACK_SHARE = 1e-9;
 
 export function colouringOf(
   net: Net,
@@ -55,6 +53,7 @@ export function colouringOf(
   theme: Theme,
 ): Colouring {
   const kind = kindOf(choice.by);
+  const conditions = conditionsOf(motion);
   if (kind) {
     const values = kind.values(net);
     const names = kind.names(net);
@@ -74,6 +73,7 @@ export function colouringOf(
     }));
     return {
       colours,
+      conditions,
       legend: { shows: "kinds", entries: entries.filter(({ count }) => count > 0) },
     };
   }
@@ -86,22 +86,17 @@ export function colouringOf(
     scale,
     least: Number.POSITIVE_INFINITY,
     most: Number.NEGATIVE_INFINITY,
-    slack: 0,
     none: 0,
-    broken: 0,
   };
-  let largest = 0;
-  for (const force of motion.forces) largest = Math.max(largest, Math.abs(force));
   for (let spring = 0; spring < values.length; spring++) {
     const value = values[spring];
-    if (!Number.isFinite(value) && Number.isFinite(motion.forces[spring])) {
+    const condition = conditionOf(conditions, spring);
+    if (condition === "broken") {
+      colours.set(brokenColour(theme), 3 * spring);
+    } else if (!Number.isFinite(value)) {
       legend.none++;
       colours.set(noneColour(theme), 3 * spring);
-    } else if (!Number.isFinite(value)) {
-      legend.broken++;
-      colours.set(brokenColour(theme), 3 * spring);
-    } else if (Math.abs(motion.forces[spring]) <= SLACK_SHARE * largest) {
-      legend.slack++;
+    } else if (condition === "slack") {
       colours.set(slackColour(theme), 3 * spring);
     } else {
       writeColour(table, placeOn(scale, value), colours, 3 * spring);
@@ -109,5 +104,5 @@ export function colouringOf(
     if (value < legend.least) legend.least = value;
     if (value > legend.most) legend.most = value;
   }
-  return { colours, legend };
+  return { colours, legend, conditions };
 }

@@ -211,19 +211,31 @@ const BUSY_AFTER = 200; // ms
  * Resolves to the reply, or to null if it failed.
  */
 export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
-  const timer = setTimeout(() => store.setState({ busy: label }), BUSY_AFTER);
   const answer = selecting();
+  const reply = await busyWith(label, askQuietly(request));
+  if (reply?.cells.length) answer({ kind: "cells", keys: reply.cells });
+  return reply;
+}
+
+/** What is under way for so long that it is told. */
+const underWay = new Set<{ label: string }>();
+
+/** Tells what is under way while it is; failures become a notice. Resolves to null if it failed. */
+export async function busyWith<T>(label: string, work: Promise<T>): Promise<T | null> {
+  const own = { label };
+  const tellBusy = () => store.setState({ busy: [...underWay].at(-1)?.label ?? "" });
+  const timer = setTimeout(() => {
+    underWay.add(own);
+    tellBusy();
+  }, BUSY_AFTER);
   try {
-    if (!connection) throw new Error("no document is open");
-    const reply = await connection.ask(request);
-    if (reply.cells.length) answer({ kind: "cells", keys: reply.cells });
-    return reply;
+    return await work;
   } catch (error) {
     notify((error as Error).message);
     return null;
   } finally {
     clearTimeout(timer);
-    store.setState({ busy: "" });
+    if (underWay.delete(own)) tellBusy();
   }
 }
 

@@ -89,8 +89,6 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
   );
 }
 
-const TEXT_FIELDS = "textarea, input:not([type=checkbox], [type=radio], [type=range])";
-
 /** What is wrong with the line to the engine, over the net. */
 function LineState() {
   const line = useStudio((state) => state.line);
@@ -143,6 +141,13 @@ function useNotices(): void {
   }, [notice]);
 }
 
+function isTextField(target: EventTarget | null): boolean {
+  return (
+    target instanceof HTMLTextAreaElement ||
+    (target instanceof HTMLInputElement && !["checkbox", "range", "file"].includes(target.type))
+  );
+}
+
 function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, working: boolean): void {
   const state = useStudio((all) => all.document !== null);
   useEffect(() => {
@@ -154,8 +159,8 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       const global = command.id === "keys" || command.id === "theme";
       if (!global && !(working && state)) return;
       if (typing && !event.ctrlKey && !event.metaKey) return;
-      // What is typed is marked, copied and undone in its field, and not in the net.
-      if (at?.closest(TEXT_FIELDS) && "acvxyz".includes(event.key.toLowerCase())) return;
+      // In a field these mean its text.
+      if (/^[acvxyz]$/i.test(event.key) && isTextField(event.target)) return;
       // Space and Enter press a focused button; they are not meant for the net then.
       if ((event.key === " " || event.key === "Enter") && at?.closest("button, [role=tab]")) return;
       event.preventDefault();

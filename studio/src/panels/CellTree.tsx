@@ -59,6 +59,27 @@ export function CellTree() {
     if (at >= 0) virtual.scrollToIndex(at, { align: "auto" });
   }, [rows, first, virtual]);
 
+  // One row takes the focus; the arrows carry it, also to rows that are not drawn yet.
+  const [focus, setFocus] = useState("");
+  const carried = useRef(false);
+  const tabbed = Math.max(
+    0,
+    rows.findIndex(({ branch }) => branch.address === (focus || first)),
+  );
+  const carry = (to: number) => {
+    const row = rows[Math.max(0, Math.min(to, rows.length - 1))];
+    carried.current = true;
+    setFocus(row.branch.address);
+    virtual.scrollToIndex(rows.indexOf(row), { align: "auto" });
+  };
+  useEffect(() => {
+    if (!carried.current) return;
+    const row = box.current?.querySelector<HTMLElement>('[role=treeitem][tabindex="0"]');
+    if (!row) return;
+    carried.current = false;
+    row.focus();
+  });
+
   if (!net) return null;
   const toggle = (address: string) => {
     setOpen((before) => {
@@ -66,6 +87,41 @@ export function CellTree() {
       if (!after.delete(address)) after.add(address);
       return after;
     });
+  };
+  /** Does what a key means in a row; false if it means nothing here. */
+  const press = (key: string, index: number, take: () => void): boolean => {
+    const { branch, depth, open: isOpen } = rows[index];
+    const below = branch.children.length > 0;
+    const above = rows.findLastIndex((row, place) => place < index && row.depth < depth);
+    switch (key) {
+      case "Enter":
+      case " ":
+        take();
+        break;
+      case "ArrowDown":
+        carry(index + 1);
+        break;
+      case "ArrowUp":
+        carry(index - 1);
+        break;
+      case "Home":
+        carry(0);
+        break;
+      case "End":
+        carry(rows.length - 1);
+        break;
+      case "ArrowRight":
+        if (below && !isOpen) toggle(branch.address);
+        else if (below) carry(index + 1);
+        break;
+      case "ArrowLeft":
+        if (below && isOpen) toggle(branch.address);
+        else if (above >= 0) carry(above);
+        break;
+      default:
+        return false;
+    }
+    return true;
   };
   return (
     <div className="tree" ref={box} role="tree" aria-label="Cells" aria-multiselectable="true">
@@ -85,7 +141,7 @@ export function CellTree() {
             <div
               key={branch.address}
               role="treeitem"
-              tabIndex={index === 0 || isChosen ? 0 : -1}
+              tabIndex={index === tabbed ? 0 : -1}
               aria-level={depth + 1}
               aria-selected={isChosen}
               {...(below ? { "aria-expanded": isOpen } : {})}
@@ -93,18 +149,13 @@ export function CellTree() {
                 branch.cell >= 0 && branch.cell === hovered ? "tree-row hovered" : "tree-row"
               }
               style={{ transform: `translateY(${start}px)`, paddingLeft: 8 + 14 * depth }}
+              onFocus={() => setFocus(branch.address)}
               onClick={(event) => take(event.shiftKey || event.ctrlKey || event.metaKey)}
               onKeyDown={(event) => {
-                if (event.key === "Enter") take(event.shiftKey);
-                if (
-                  below &&
-                  ((event.key === "ArrowRight" && !isOpen) || (event.key === "ArrowLeft" && isOpen))
-                )
-                  toggle(branch.address);
-                if (event.key === "ArrowDown")
-                  (event.currentTarget.nextElementSibling as HTMLElement | null)?.focus();
-                if (event.key === "ArrowUp")
-                  (event.currentTarget.previousElementSibling as HTMLElement | null)?.focus();
+                if (!press(event.key, index, () => take(event.shiftKey))) return;
+                // These keys mean the tree here, whatever they do elsewhere.
+                event.preventDefault();
+                event.stopPropagation();
               }}
             >
               <button

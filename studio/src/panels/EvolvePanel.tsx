@@ -2,8 +2,8 @@
 import { Columns2, Images, Pause, Play, Square } from "lucide-react";
 import { useState } from "react";
 import { compare } from "../document/comparing";
-import { lookAt, shownSide } from "../document/pins";
 import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
+import { lookAt, shownSide } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { ask, askQuietly, notify, store } from "../document/store";
 import type { Asking, Refused } from "../protocol/connection";

@@ -3,6 +3,7 @@ import { SlidersHorizontal } from "lucide-react";
 import { Popover } from "radix-ui";
 import { useMemo } from "react";
 import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
+import { type Condition, type Conditions, PIECES } from "../document/conditions";
 import { formulaOf, shared } from "../document/laws";
 import {
   brokenColour,
@@ -30,14 +31,15 @@ export function Legend() {
   const net = useStudio((state) => state.net);
   const colour = useStudio((state) => state.view.colour);
   const theme = useStudio((state) => state.theme);
-  const legend = useMemo(
+  const colouring = useMemo(
     () =>
       net && motion && motion.header.revision === net.revision
-        ? colouringOf(net, motion, colour, theme).legend
+        ? colouringOf(net, motion, colour, theme)
         : null,
     [net, motion, colour, theme],
   );
-  if (!net || !legend) return null;
+  if (!net || !colouring) return null;
+  const { legend, conditions } = colouring;
   const quantity = quantityOf(colour.by);
   return (
     <section className="floating legend" aria-label="Legend">
@@ -55,6 +57,7 @@ export function Legend() {
         {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
       </header>
       {legend.shows === "scale" ? <ScaleBar legend={legend} /> : <KindList legend={legend} />}
+      <Idle conditions={conditions} kinds={legend.shows === "kinds"} />
       <Arrow />
     </section>
   );
@@ -63,7 +66,7 @@ export function Legend() {
 function ScaleBar({ legend }: { legend: ScaleLegend }) {
   const colour = useStudio((state) => state.view.colour);
   const theme = useStudio((state) => state.theme);
-  const { scale, least, most, slack, none, broken } = legend;
+  const { scale, least, most, none } = legend;
   const quantity = quantityOf(colour.by)!;
   const unit = quantity.unit && ` ${quantity.unit}`;
   const net = useStudio((state) => state.net)!;
@@ -99,13 +102,6 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
             .join(" · ")}
         </span>
       </footer>
-      {slack > 0 && (
-        <Entry
-          colour={cssColour(slackColour(theme))}
-          name={slack === 1 ? "slack spring" : "slack springs"}
-          count={slack}
-        />
-      )}
       {none > 0 && (
         <Entry
           colour={cssColour(noneColour(theme))}
@@ -113,8 +109,32 @@ function ScaleBar({ legend }: { legend: ScaleLegend }) {
           count={none}
         />
       )}
+    </>
+  );
+}
+
+/** The springs that carry nothing, told by their form; by kinds they keep the colour of their kind. */
+function Idle({ conditions, kinds }: { conditions: Conditions; kinds: boolean }) {
+  const theme = useStudio((state) => state.theme);
+  const { slack, broken } = conditions;
+  const ink = (colour: string) => (kinds ? "currentColor" : colour);
+  return (
+    <>
+      {slack > 0 && (
+        <Entry
+          colour={ink(cssColour(slackColour(theme)))}
+          name={slack === 1 ? "slack spring" : "slack springs"}
+          count={slack}
+          form="slack"
+        />
+      )}
       {broken > 0 && (
-        <Entry colour={cssColour(brokenColour(theme))} name="broken: no force" count={broken} />
+        <Entry
+          colour={ink(cssColour(brokenColour(theme)))}
+          name="broken: no force"
+          count={broken}
+          form="broken"
+        />
       )}
     </>
   );
@@ -144,10 +164,28 @@ function KindList({ legend }: { legend: KindLegend }) {
   );
 }
 
-function Entry({ colour, name, count }: { colour: string; name: string; count: number }) {
+function Entry({
+  colour,
+  name,
+  count,
+  form,
+}: {
+  colour: string;
+  name: string;
+  count: number;
+  form?: Condition;
+}) {
   return (
     <div className="legend-entry">
-      <i style={{ background: colour }} />
+      {form ? (
+        <svg className="legend-form" viewBox="0 0 1 0.14" aria-hidden="true">
+          {PIECES[form].map(([from, to]) => (
+            <line key={from} x1={from} x2={to} y1={0.07} y2={0.07} stroke={colour} />
+          ))}
+        </svg>
+      ) : (
+        <i style={{ background: colour }} />
+      )}
       <span>{name}</span>
       <span>{count.toLocaleString("en")}</span>
     </div>

@@ -1,24 +1,13 @@
 // What opens over the page: the command palette, the sheet of keys, and saving.
 import { Command as Palette } from "cmdk";
 import { Dialog } from "radix-ui";
-import { type FormEvent, type ReactNode, useState } from "react";
+import { type FormEvent, useState } from "react";
 import { ask, store } from "../document/store";
-import { COMMANDS, type Command, type Group } from "./commands";
+import { COMMANDS, type Command, GROUPS } from "./commands";
 import { useDialogs } from "./dialogs";
+import { KeySheet } from "./KeySheet";
 import { Keys } from "./parts";
 import { useStage, useStudio } from "./use";
-
-const GROUPS: Group[] = [
-  "Net",
-  "Cells",
-  "Selecting",
-  "Grafting",
-  "Choosing",
-  "Springs and nodes",
-  "Tools",
-  "View",
-  "Document",
-];
 
 export type OpenDialog = "palette" | "keys" | "save" | null;
 
@@ -77,63 +66,6 @@ function CommandPalette({ onClose }: { onClose(): void }) {
         </Palette.List>
       </Palette>
     </Dialog.Content>
-  );
-}
-
-const MOUSE: [string, string][] = [
-  ["Drag a node", "pull the net; let go and it returns"],
-  ["Drag an anchor", "move it"],
-  ["Drag an arm", "move along x, y or z"],
-  ["⇧ while dragging", "up and down only"],
-  ["Ctrl while dragging", "level only"],
-  ["Click, ⇧ click", "select, add to the selection"],
-  ["Right button", "what can be done here"],
-  ["Drag beside the net", "orbit"],
-  ["Middle drag, ⇧ drag", "pan"],
-  ["Wheel", "zoom to the pointer"],
-  ["⇧ click an individual", "mark it for a comparison"],
-];
-
-function KeySheet() {
-  return (
-    <Dialog.Content className="dialog sheet" aria-describedby={undefined}>
-      <Dialog.Title>Keys and mouse</Dialog.Title>
-      <div className="sheet-columns">
-        <SheetPart title="Mouse">
-          {MOUSE.map(([what, does]) => (
-            <SheetLine key={what} what={does} keys={<b>{what}</b>} />
-          ))}
-        </SheetPart>
-        {GROUPS.map((group) => (
-          <SheetPart key={group} title={group}>
-            {COMMANDS.filter((command) => command.group === group && command.keys).map(
-              ({ id, label, keys }) => (
-                <SheetLine key={id} what={label} keys={<Keys keys={keys!} />} />
-              ),
-            )}
-          </SheetPart>
-        ))}
-      </div>
-      <Dialog.Close className="button">Close</Dialog.Close>
-    </Dialog.Content>
-  );
-}
-
-function SheetPart({ title, children }: { title: string; children: ReactNode }) {
-  return (
-    <section>
-      <h3>{title}</h3>
-      {children}
-    </section>
-  );
-}
-
-function SheetLine({ what, keys }: { what: string; keys: ReactNode }) {
-  return (
-    <div className="sheet-line">
-      <span>{what}</span>
-      {keys}
-    </div>
   );
 }
 

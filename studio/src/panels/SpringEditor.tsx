@@ -6,7 +6,8 @@ import { groupOf, type Net } from "../document/net";
 import { lengthsOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
 import { selectedRows, springKey } from "../document/selection";
-import { ask, type State, store } from "../document/store";
+import { ask, notify, type State, store } from "../document/store";
+import { CurveField, pointsOf } from "./CurveField";
 import { Choice, Hint, Section } from "./parts";
 import { useStudio } from "./use";
 
@@ -77,9 +78,14 @@ function scopesOf(net: Net, selection: State["selection"]): Scope[] {
 }
 
 const RESTS = {
-  rest_ratio: { name: "× drawn length", unit: "", value: "0.8" },
-  rest_length: { name: "length", unit: "m", value: "" },
-  prestress: { name: "from prestress", unit: "N", value: "" },
+  rest_ratio: { name: "× drawn length", label: "L0", unit: "", value: "0.8" },
+  rest_length: { name: "length", label: "L0", unit: "m", value: "" },
+  prestress: {
+    name: "from prestress",
+    label: "Force at the drawn length",
+    unit: "N",
+    value: "",
+  },
 };
 type RestKey = keyof typeof RESTS;
 
@@ -111,6 +117,17 @@ function LawForm({ scope }: { scope: Scope }) {
   };
   const submit = (event: FormEvent) => {
     event.preventDefault();
+    // What is no number would be sent as nothing, which takes back what was said.
+    const given = [
+      ...(chosen && chosen.key !== "curve" ? [[chosen.constant.name, constant]] : []),
+      ...(restKey ? [[RESTS[restKey].label, restValue]] : []),
+      ["The diameter", diameter],
+    ];
+    const wrong = given.find(([, text]) => text.trim() !== "" && Number.isNaN(numberOf(text)));
+    if (wrong) {
+      notify(`${wrong[0]}: “${wrong[1].trim()}” is no number; write one such as 0.8`);
+      return;
+    }
     const says: Record<string, unknown> = {};
     if (law && (newLaw || constant !== held))
       says[law] = law === "curve" ? pointsOf(constant) : numberOf(constant);
@@ -140,15 +157,7 @@ function LawForm({ scope }: { scope: Scope }) {
         </p>
       )}
       {chosen?.key === "curve" ? (
-        <label className="curve-field">
-          <span>Points: strain, force in N; a line each, from 0, 0</span>
-          <textarea
-            rows={4}
-            value={constant}
-            placeholder={newLaw ? "" : "as it is"}
-            onChange={(event) => setConstant(event.target.value)}
-          />
-        </label>
+        <CurveField text={constant} empty={newLaw ? "" : "as it is"} onText={setConstant} />
       ) : (
         chosen && (
           <Quantity
@@ -178,7 +187,7 @@ function LawForm({ scope }: { scope: Scope }) {
           />
           {restKey && (
             <Quantity
-              label={restKey === "prestress" ? "Force at the drawn length" : "L0"}
+              label={RESTS[restKey].label}
               unit={RESTS[restKey].unit}
               text={restValue}
               empty=""
@@ -304,18 +313,6 @@ function plain(value: number, digits = 6): string {
 
 function numberOf(text: string): number {
   return text.trim() === "" ? Number.NaN : Number(text.trim().replace(",", "."));
-}
-
-function pointsOf(text: string): number[][] {
-  return text
-    .split("\n")
-    .filter((line) => line.trim())
-    .map((line) =>
-      line
-        .trim()
-        .split(/[\s,;]+/)
-        .map(Number),
-    );
 }
 
 function diameterOf(net: Net, rows: number[]): string {

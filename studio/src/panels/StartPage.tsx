@@ -72,7 +72,11 @@ export function StartPage() {
             <ul className="scenes">
               {shelf.scenes.map(({ name, description }) => (
                 <li key={name}>
-                  <button type="button" onClick={() => open(name, setProblem)} disabled={opening !== ""}>
+                  <button
+                    type="button"
+                    onClick={() => open(name, setProblem)}
+                    disabled={opening !== ""}
+                  >
                     <Thumbnail path={`/api/scenes/${name}/picture`} width={256} height={172} />
                     <b>
                       {name.replaceAll("-", " ")}

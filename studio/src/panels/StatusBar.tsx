@@ -66,6 +66,7 @@ function Badge() {
 function Residual() {
   const residual = useStudio((state) => state.motion?.header.residual ?? null);
   const steps = useStudio((state) => state.motion?.header.steps ?? 0);
+  const took = useStudio((state) => state.motion?.header.took ?? 0);
   const reason = useStudio((state) => state.motion?.header.reason ?? "");
   return (
     <>
@@ -75,7 +76,10 @@ function Residual() {
       >
         residual <b>{inDigits(residual, 2)}</b>
       </span>
-      <span className="status-fact" title="Steps since the net was last disturbed">
+      <span
+        className="status-fact"
+        title={`Steps since the net was last disturbed; the last one took ${inDigits(1000 * took, 2)} ms`}
+      >
         step <b>{steps}</b>
       </span>
       {reason && <span className="status-fact warning">{reason}</span>}

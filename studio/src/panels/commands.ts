@@ -10,16 +10,19 @@ import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
 import { toggleSection } from "./SectionControl";
 
-export type Group =
-  | "Net"
-  | "Cells"
-  | "Selecting"
-  | "Grafting"
-  | "Choosing"
-  | "Springs and nodes"
-  | "Tools"
-  | "View"
-  | "Document";
+export const GROUPS = [
+  "Net",
+  "Cells",
+  "Selecting",
+  "Grafting",
+  "Choosing",
+  "Springs and nodes",
+  "Tools",
+  "View",
+  "Document",
+] as const;
+
+export type Group = (typeof GROUPS)[number];
 
 export interface Command {
   id: string;

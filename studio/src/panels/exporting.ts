@@ -1,8 +1,9 @@
 // Files for others: the picture as the canvas shows it, and the model as the engine writes it.
 import { formulaText, quantityOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
-import { notify, store } from "../document/store";
-import { documentInAddress, engineAddress } from "../protocol/address";
+import { busyWith, store } from "../document/store";
+import { documentInAddress } from "../protocol/address";
+import { fetchModel } from "../protocol/fetching";
 import type { Viewport } from "../viewport/scene";
 
 /** Files of the model, by the name that the engine knows. */
@@ -40,14 +41,9 @@ export function exportDrawing(viewport: Viewport): void {
 }
 
 export async function exportModel(format: (typeof MODELS)[number]["name"]): Promise<void> {
-  const path = `/api/documents/${documentInAddress()}/export/${format}`;
-  const response = await fetch(engineAddress(path)).catch(() => null);
-  if (!response?.ok) {
-    const said = (await response?.json().catch(() => null)) as { problem?: string } | null;
-    notify(said?.problem ?? "the engine does not answer");
-    return;
-  }
-  const address = URL.createObjectURL(await response.blob());
+  const content = await busyWith("Writing the file", fetchModel(documentInAddress(), format));
+  if (!content) return;
+  const address = URL.createObjectURL(content);
   const suffix = format === "tables" ? "zip" : format;
   download(address, `${name()}.${suffix}`);
   URL.revokeObjectURL(address);

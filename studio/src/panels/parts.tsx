@@ -124,8 +124,7 @@ export function Fact({
   digits?: number;
   title?: string;
 }) {
-  const changed =
-    typeof value === "number" && typeof before === "number" && differs(value, before);
+  const changed = typeof value === "number" && typeof before === "number" && differs(value, before);
   const change = changed ? value - before : 0;
   const good = better && (better === "less" ? change < 0 : change > 0);
   const tone = !better ? "" : good ? "good" : "bad";

@@ -6,6 +6,7 @@ import type {
   Clusters,
   Compared,
   Comparing,
+  CurvePoints,
   Lineage,
   Opened,
   Opening,
@@ -50,6 +51,18 @@ export async function fetchPicture(path: string): Promise<[net: Frame, motion: F
 export async function fetchTable(document: string, first: number): Promise<Frame> {
   const response = await answer(`/api/documents/${document}/run`, {}, `&from=${first}`);
   return decodeFrame(await response.arrayBuffer());
+}
+
+/** A document's model as a file. */
+export async function fetchModel(document: string, format: string): Promise<Blob> {
+  return (await answer(`/api/documents/${document}/export/${format}`)).blob();
+}
+
+/** The test points in a CSV file with a measured curve. */
+export async function fetchCurve(file: File): Promise<CurvePoints> {
+  const query = `&name=${encodeURIComponent(file.name)}`;
+  const options = { method: "POST", body: file };
+  return (await answer("/api/curve", options, query)).json() as Promise<CurvePoints>;
 }
 
 /** Clusters of the individuals that are brushed. */

@@ -54,6 +54,7 @@ export interface Protocol {
   clusters: Clusters;
   comparing: Comparing;
   compared: Compared;
+  curve: CurvePoints;
 }
 /**
  * Subdivide, switch off, switch on or retype cells.
@@ -1139,6 +1140,14 @@ export interface MotionHeader {
    * Nodes that are dragged.
    */
   held: number[];
+  /**
+   * From the change that it follows until its step began [s]; 0 of later steps.
+   */
+  waited: number;
+  /**
+   * What its step took [s].
+   */
+  took: number;
   arrays: ArrayHeader[];
 }
 /**
@@ -1324,4 +1333,14 @@ export interface ComparedReaction {
   anchor: string;
   first: number | null;
   second: number | null;
+}
+/**
+ * A measured curve, as it was read from a CSV file.
+ */
+export interface CurvePoints {
+  strains: number[];
+  /**
+   * Of every test point [N].
+   */
+  forces: number[];
 }

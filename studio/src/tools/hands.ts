@@ -12,6 +12,18 @@ import { Weighing } from "./weighing";
 
 const CLICK_REACH = 4; // px
 
+/** Time between two moves of a direct drag [ms]; the engine makes no more than 60 steps a second by itself. */
+const DIRECT_EVERY = 8;
+
+/** A button that is down. */
+interface Press {
+  x: number;
+  y: number;
+  hit: Hit | null;
+  taken: boolean;
+  far: boolean;
+}
+
 /** Tells the tool what the pointer does. */
 export class Hands {
   private readonly tools: Record<ToolId, Tool> = {
@@ -30,10 +42,10 @@ export class Hands {
     band: new Gathering("band"),
     graft: new Grafting(),
   };
-  private press: { x: number; y: number; hit: Hit | null; taken: boolean; far: boolean } | null =
-    null;
+  private press: Press | null = null;
   private last: Pointer | null = null;
   private asked = 0;
+  private direct = 0;
   private readonly ends: (() => void)[] = [];
 
   constructor(
@@ -42,6 +54,8 @@ export class Hands {
   ) {
     this.listen(canvas, "pointerdown", (event) => this.down(event), true);
     this.listen(canvas, "pointermove", (event) => this.move(event));
+    // What is dragged need not wait until the last picture is drawn, as Chromium's other events of moves do.
+    this.listen(canvas, "pointerrawupdate", (event) => this.follow(event as PointerEvent));
     this.listen(canvas, "pointerup", (event) => this.up(event), true);
     this.listen(canvas, "pointercancel", () => this.cancel());
     this.listen(canvas, "pointerleave", () => this.leave());
@@ -95,17 +109,26 @@ export class Hands {
     });
   }
 
+  private follow(event: PointerEvent): void {
+    if (!this.press?.taken || !this.tool.direct) return;
+    if (event.timeStamp < this.direct + DIRECT_EVERY) return;
+    this.direct = event.timeStamp;
+    this.last = this.pointer(event);
+    this.dragged(this.press, this.last);
+  }
+
+  private dragged(press: Press, pointer: Pointer): void {
+    press.far ||= Math.hypot(pointer.x - press.x, pointer.y - press.y) > CLICK_REACH;
+    if (press.taken && press.far) this.tool.drag(this.viewport, this.dragHit(pointer), pointer);
+  }
+
+  private dragHit({ x, y }: Pointer): Hit | null {
+    return this.tool.direct ? null : this.viewport.pick(x, y, this.tool.reach);
+  }
+
   private moved(pointer: Pointer): void {
-    const { press } = this;
-    if (press) {
-      press.far ||= Math.hypot(pointer.x - press.x, pointer.y - press.y) > CLICK_REACH;
-      if (press.taken && press.far) {
-        this.tool.drag(
-          this.viewport,
-          this.viewport.pick(pointer.x, pointer.y, this.tool.reach),
-          pointer,
-        );
-      }
+    if (this.press) {
+      this.dragged(this.press, pointer);
       return;
     }
     const hit = this.viewport.pick(pointer.x, pointer.y, this.tool.reach);
@@ -124,11 +147,7 @@ export class Hands {
     this.viewport.eye.controls.enabled = true;
     const far = press.far || Math.hypot(pointer.x - press.x, pointer.y - press.y) > CLICK_REACH;
     if (far && press.taken) {
-      this.tool.drag(
-        this.viewport,
-        this.viewport.pick(pointer.x, pointer.y, this.tool.reach),
-        pointer,
-      );
+      this.tool.drag(this.viewport, this.dragHit(pointer), pointer);
       this.tool.drop(this.viewport, pointer);
     } else if (!far) {
       this.tool.click(this.viewport, press.hit, pointer);

@@ -25,6 +25,7 @@ interface Held {
 export class Pulling implements Tool {
   readonly reach = { nodes: true, springs: true, cells: true };
   readonly cursor = "default";
+  readonly direct = true;
   private held: Held | null = null;
 
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
@@ -54,10 +55,11 @@ export class Pulling implements Tool {
     if (!held) return;
     const place = placeOf(viewport, held, pointer);
     if (!place) return;
-    held.at.copy(place);
-    held.moved = true;
     viewport.guide = guideOf(held, pointer);
     viewport.redraw(true);
+    if (held.moved && place.equals(held.at)) return;
+    held.at.copy(place);
+    held.moved = true;
     tell({ type: "hold", node: held.key, position: place.toArray() });
   }
 

@@ -22,6 +22,8 @@ export interface Reach {
 export interface Tool {
   readonly reach: Reach;
   readonly cursor: string;
+  /** Whether a drag is followed at once, whatever lies under the pointer. */
+  readonly direct?: boolean;
   /** The button goes down on something; returns whether the tool takes the drag from the eye. */
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean;
   /** A drag that the tool took goes on. */

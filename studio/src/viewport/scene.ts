@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import { type Colouring, colouringOf } from "../document/colouring";
 import { type Comparison, comparing, isComparing } from "../document/comparing";
+import { formed } from "../document/conditions";
 import { grafting } from "../document/grafting";
 import { type Motion, positionOf } from "../document/motion";
 import { groupOf, type Net } from "../document/net";
@@ -302,6 +303,8 @@ export class Viewport {
     const still = performance.now() - this.lastMove > STILL_AFTER && !gliding;
     clearTimeout(this.stillTimer);
     this.render(!this.software || still);
+    // For whoever looks at the page: whether the picture is as fine as it will be.
+    this.canvas.dataset.fine = String(!this.software || still);
     if (gliding) {
       this.lastMove = performance.now();
       this.redraw();
@@ -363,10 +366,12 @@ export class Viewport {
   /** The springs as they are seen. */
   private lines(net: Net, motion: Motion, cut: Cut | null): Lines {
     const { view, theme } = store.getState();
-    const { colours } = this.colouring ?? colouringOf(net, motion, view.colour, theme);
+    const seen = this.colouring ?? colouringOf(net, motion, view.colour, theme);
+    const { colours, conditions } = seen;
     const widths = view.thickness ? widthsOf(net, motion, view.colour) : WIDTH;
     const count = net.ends.length / 2;
-    return clipped(cut, { count, ends: endsOf(net, motion.positions), colours, widths });
+    const springs = { count, ends: endsOf(net, motion.positions), colours, widths };
+    return clipped(cut, formed(springs, conditions));
   }
 
   private updateMarks({ selection, hover, theme, view }: State, net: Net, motion: Motion): void {
