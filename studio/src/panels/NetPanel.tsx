@@ -1,6 +1,7 @@
 // The net as a whole: its figures, before and after the last action, stress-seeking and settings.
 import { useState } from "react";
 import { ask } from "../document/store";
+import { selectExtreme } from "./commands";
 import { DensitySection } from "./DensitySection";
 import { FilterSection } from "./FilterSection";
 import { foreseen } from "./foreseen";
@@ -40,11 +41,25 @@ function Figures() {
         value={figures.force_differential}
         before={before?.force_differential}
         better="less"
-        title="Largest over smallest spring force; undefined if a spring carries next to nothing"
+        title="Largest over smallest spring force: the nearer to 1, the sooner one kind of cord makes the net; undefined if a spring carries next to nothing"
       />
       <Fact name="Springs" value={figures.springs} before={before?.springs} digits={6} />
-      <Fact name="Largest force" value={figures.force_max} unit="N" before={before?.force_max} />
-      <Fact name="Smallest force" value={figures.force_min} unit="N" before={before?.force_min} />
+      <Fact
+        name="Largest force"
+        value={figures.force_max}
+        unit="N"
+        before={before?.force_max}
+        title="Of all springs: click to select the one that carries it"
+        onPick={selectExtreme(true)}
+      />
+      <Fact
+        name="Smallest force"
+        value={figures.force_min}
+        unit="N"
+        before={before?.force_min}
+        title="Of all springs: click to select the one that carries it"
+        onPick={selectExtreme(false)}
+      />
       <Fact name="Mean force" value={figures.force_mean} unit="N" before={before?.force_mean} />
       <Fact
         name="Total length"

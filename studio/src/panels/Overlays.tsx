@@ -2,9 +2,10 @@
 import { Command as Palette } from "cmdk";
 import { Dialog } from "radix-ui";
 import { type FormEvent, useState } from "react";
-import { ask, store } from "../document/store";
+import { askQuietly } from "../document/store";
 import { COMMANDS, type Command, GROUPS } from "./commands";
 import { useDialogs } from "./dialogs";
+import { FolderList } from "./FolderList";
 import { KeySheet } from "./KeySheet";
 import { Keys } from "./parts";
 import { useStage, useStudio } from "./use";
@@ -78,19 +79,20 @@ function SaveDialog({ onClose }: { onClose(): void }) {
   const [problem, setProblem] = useState("");
   const save = async (event: FormEvent) => {
     event.preventDefault();
-    const before = store.getState().notice;
-    const reply = await ask({ type: "save", path, replace }, "Saving");
-    const { notice } = store.getState();
-    if (reply) onClose();
-    else if (notice && notice !== before) setProblem(notice.text);
+    try {
+      await askQuietly({ type: "save", path, replace });
+      onClose();
+    } catch (error) {
+      setProblem((error as Error).message);
+    }
   };
   return (
     <Dialog.Content className="dialog save" aria-describedby={undefined}>
       <Dialog.Title>Save as a design file</Dialog.Title>
       <form onSubmit={save}>
         <p className="explain">
-          The studio keeps everything anyway; a file is for the command line, and for others. It
-          ends in .toml or .json.
+          The studio keeps everything anyway; a file is for the command line, and for others. The
+          net takes the file's name; without an ending it is a .toml file.
         </p>
         <label className="path-field">
           Path on this machine
@@ -104,6 +106,10 @@ function SaveDialog({ onClose }: { onClose(): void }) {
           />
           Replace a file that is there
         </label>
+        <FolderList
+          onEnter={(folder) => setPath(`${folder}/${path.split("/").pop()}`)}
+          onPick={setPath}
+        />
         {problem && (
           <p className="problem" role="alert">
             {problem}

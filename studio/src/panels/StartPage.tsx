@@ -1,10 +1,16 @@
 // The start: scenes with their pictures, documents worked on before, and a file by its path.
-import { FileText, LoaderCircle } from "lucide-react";
+import { LoaderCircle, Trash2 } from "lucide-react";
 import { type FormEvent, useEffect, useState } from "react";
+import { toast } from "sonner";
+import { ask } from "../document/store";
 import { documentInAddress } from "../protocol/address";
-import { fetchShelf, openSource } from "../protocol/fetching";
-import type { Shelf } from "../protocol/messages";
+import { fetchShelf, openSource, removeDocument } from "../protocol/fetching";
+import type { DocumentEntry, Shelf } from "../protocol/messages";
+import { FolderList } from "./FolderList";
+import { Hint } from "./parts";
 import { Thumbnail } from "./Thumbnail";
+
+const FEW = 6;
 
 export function StartPage() {
   const [shelf, setShelf] = useState<Shelf | null>(null);
@@ -12,6 +18,7 @@ export function StartPage() {
   const [fileProblem, setFileProblem] = useState("");
   const [opening, setOpening] = useState("");
   const [path, setPath] = useState("");
+  const [all, setAll] = useState(false);
   useEffect(() => {
     fetchShelf().then(setShelf, (error: Error) => setProblem(error.message));
   }, []);
@@ -19,11 +26,21 @@ export function StartPage() {
     setOpening(source);
     tell("");
     try {
-      location.hash = await openSource(source);
+      const { id, went_on } = await openSource(source);
+      location.hash = id;
+      if (went_on) tellWentOn(source.split("/").pop() ?? source);
     } catch (error) {
       tell((error as Error).message);
     }
     setOpening("");
+  };
+  const remove = async (id: string) => {
+    try {
+      await removeDocument(id);
+      setShelf(await fetchShelf());
+    } catch (error) {
+      setProblem((error as Error).message);
+    }
   };
   const submit = (event: FormEvent) => {
     event.preventDefault();
@@ -51,19 +68,15 @@ export function StartPage() {
           <section aria-labelledby="recent">
             <h2 id="recent">Go on with</h2>
             <ul className="recent">
-              {shelf.documents.slice(0, 6).map(({ id, name, file, changed }) => (
-                <li key={id}>
-                  <a href={`${location.search}#${id}`} aria-current={id === documentInAddress()}>
-                    <FileText />
-                    <span>
-                      <b>{name}</b>
-                      <small>{file ?? "kept on this machine"}</small>
-                    </span>
-                    <time dateTime={new Date(changed * 1000).toISOString()}>{ago(changed)}</time>
-                  </a>
-                </li>
+              {shelf.documents.slice(0, all ? undefined : FEW).map((entry) => (
+                <Recent key={entry.id} entry={entry} onRemove={remove} />
               ))}
             </ul>
+            {!all && shelf.documents.length > FEW && (
+              <button type="button" className="button" onClick={() => setAll(true)}>
+                All {shelf.documents.length} documents
+              </button>
+            )}
           </section>
         )}
         {shelf && (
@@ -106,6 +119,7 @@ export function StartPage() {
               Open
             </button>
           </form>
+          <FolderList onPick={(found) => open(found, setFileProblem)} />
           {fileProblem && (
             <p className="problem" role="alert">
               {fileProblem}
@@ -115,6 +129,51 @@ export function StartPage() {
       </div>
     </main>
   );
+}
+
+/** A document; its picture, and a button that removes it when it is pressed twice. */
+function Recent({ entry, onRemove }: { entry: DocumentEntry; onRemove(id: string): void }) {
+  const { id, name, file, changed } = entry;
+  const [sure, setSure] = useState(false);
+  return (
+    <li>
+      <a href={`${location.search}#${id}`} aria-current={id === documentInAddress()}>
+        <Thumbnail
+          path={`/api/documents/${id}/picture`}
+          revision={String(changed)}
+          width={72}
+          height={52}
+        />
+        <span>
+          <b>{name}</b>
+          <small>{file ?? "kept on this machine"}</small>
+          <time dateTime={new Date(changed * 1000).toISOString()}>{ago(changed)}</time>
+        </span>
+      </a>
+      <Hint text={sure ? "It can't be brought back; its file stays" : `Remove ${name}`}>
+        <button
+          type="button"
+          className={sure ? "button remove" : "icon-button remove"}
+          aria-label={sure ? `Remove ${name} for good` : `Remove ${name}`}
+          onBlur={() => setSure(false)}
+          onClick={() => (sure ? onRemove(id) : setSure(true))}
+        >
+          {sure ? "Remove" : <Trash2 />}
+        </button>
+      </Hint>
+    </li>
+  );
+}
+
+/** Says that a document is ahead of its file, and offers to go back to it. */
+function tellWentOn(file: string): void {
+  toast.message(`You went on after ${file} was saved: this is what you made of it.`, {
+    action: {
+      label: "Back to the file",
+      onClick: () => void ask({ type: "revert" }, "Reading the file"),
+    },
+    duration: 15_000,
+  });
 }
 
 function ago(seconds: number): string {

@@ -105,6 +105,18 @@ function selectSameForce(): void {
   select({ kind: "springs", keys: near.map((spring) => springKey(net, spring)) });
 }
 
+/** Selects the spring that carries most, or least. */
+export function selectExtreme(most: boolean): () => void {
+  return () => {
+    const { net, motion } = store.getState();
+    if (!net || !motion?.forces.length) return;
+    const best = [...motion.forces.keys()].reduce((one, other) =>
+      motion.forces[other] > motion.forces[one] === most ? other : one,
+    );
+    select({ kind: "springs", keys: [springKey(net, best)] });
+  };
+}
+
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
 export const COMMANDS: Command[] = [
@@ -164,6 +176,18 @@ export const COMMANDS: Command[] = [
     keys: "R",
     refused: needsCells,
     run: editCells("turn", "Turning"),
+  },
+  {
+    id: "largest-force",
+    label: "Select the spring with the largest force",
+    group: "Selecting",
+    run: selectExtreme(true),
+  },
+  {
+    id: "smallest-force",
+    label: "Select the spring with the smallest force",
+    group: "Selecting",
+    run: selectExtreme(false),
   },
   {
     id: "cut",

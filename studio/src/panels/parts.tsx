@@ -105,6 +105,31 @@ function differs(one: number, other: number): boolean {
   return difference > 1e-12 && difference > AGREEMENT * Math.max(Math.abs(one), Math.abs(other));
 }
 
+function FactName({
+  name,
+  title,
+  onPick,
+}: {
+  name: string;
+  title?: string | undefined;
+  onPick?: (() => void) | undefined;
+}) {
+  const shown = onPick ? (
+    <button type="button" className="fact-name fact-pick" onClick={onPick}>
+      {name}
+    </button>
+  ) : (
+    <span className="fact-name">{name}</span>
+  );
+  return title ? (
+    <Hint text={title} side="left">
+      {shown}
+    </Hint>
+  ) : (
+    shown
+  );
+}
+
 /** A value with its name, unit and, if it is known, how it changed. */
 export function Fact({
   name,
@@ -114,6 +139,7 @@ export function Fact({
   better,
   digits = 4,
   title,
+  onPick,
 }: {
   name: string;
   value: number | null | string;
@@ -123,14 +149,16 @@ export function Fact({
   better?: "less" | "more";
   digits?: number;
   title?: string;
+  /** Shows on the net what the value is of. */
+  onPick?(): void;
 }) {
   const changed = typeof value === "number" && typeof before === "number" && differs(value, before);
   const change = changed ? value - before : 0;
   const good = better && (better === "less" ? change < 0 : change > 0);
   const tone = !better ? "" : good ? "good" : "bad";
   return (
-    <div className="fact" title={title}>
-      <span className="fact-name">{name}</span>
+    <div className="fact">
+      <FactName name={name} title={title} onPick={onPick} />
       <span className="fact-value">
         {changed && (
           <span className={`fact-change ${tone}`}>

@@ -7,6 +7,7 @@ import type {
   Compared,
   Comparing,
   CurvePoints,
+  Folder,
   Lineage,
   Opened,
   Opening,
@@ -31,13 +32,21 @@ export async function fetchShelf(): Promise<Shelf> {
   return (await answer("/api/shelf")).json() as Promise<Shelf>;
 }
 
-/** Opens a scene or a design file as a document; returns the document's id. */
-export async function openSource(source: string): Promise<string> {
+/** What a folder of this machine holds; an empty path is where the engine was started. */
+export async function fetchFolder(path: string): Promise<Folder> {
+  const query = `&path=${encodeURIComponent(path)}`;
+  return (await answer("/api/folder", {}, query)).json() as Promise<Folder>;
+}
+
+/** Removes a document for good; its design file stays. */
+export async function removeDocument(id: string): Promise<void> {
+  await answer(`/api/documents/${id}`, { method: "DELETE" });
+}
+
+/** Opens a scene or a design file as a document. */
+export async function openSource(source: string): Promise<Opened> {
   const body = JSON.stringify({ source } satisfies Opening);
-  const opened = (await (
-    await answer("/api/documents", { method: "POST", body })
-  ).json()) as Opened;
-  return opened.id;
+  return (await answer("/api/documents", { method: "POST", body })).json() as Promise<Opened>;
 }
 
 /** The net and the state of a picture, such as `/api/scenes/sheet/picture`. */
