@@ -1,9 +1,9 @@
 // Evolution: its parameters, its course, all individuals, and what becomes of them.
-import { Columns2, Images, Pause, Play, Square } from "lucide-react";
+import { Columns2, Images, Pause, Pin, PinOff, Play, Square } from "lucide-react";
 import { useState } from "react";
 import { compare } from "../document/comparing";
 import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
-import { lookAt, shownSide } from "../document/pins";
+import { lookAt, pinOfSide, shownSide, togglePin } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { ask, askQuietly, notify, store } from "../document/store";
 import type { Asking, Refused } from "../protocol/connection";
@@ -11,7 +11,7 @@ import { ClusterSection, LineageSection } from "./Choosing";
 import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
 import { ParameterFields } from "./ParameterFields";
-import { PinButton, PinnedSection } from "./Pins";
+import { PinnedSection } from "./Pins";
 import { Fact, IconButton, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { Scatter } from "./Scatter";
@@ -243,6 +243,8 @@ export function LookingBanner() {
   const looking = useStudio((state) => state.document?.looking ?? null);
   const figures = useStudio((state) => state.document?.figures);
   const run = useStudio((state) => state.run);
+  const shown = useStudio((state) => shownSide(state.document));
+  const pinned = useStudio((state) => pinOfSide(state, shown) !== null);
   if (!looking || !figures) return null;
   return (
     <div className="looking" role="status">
@@ -273,11 +275,18 @@ export function LookingBanner() {
       <button type="button" className="button" onClick={() => lookAt("design")}>
         Back to my design
       </button>
-      <PinButton />
+      <IconButton
+        label={pinned ? "Unpin it" : "Pin it"}
+        keys="P"
+        pressed={pinned}
+        onClick={() => togglePin(shown)}
+      >
+        {pinned ? <PinOff /> : <Pin />}
+      </IconButton>
       <IconButton
         label="Compare with my design"
         keys="Shift+P"
-        onClick={() => compare("design", shownSide(store.getState().document))}
+        onClick={() => compare("design", shown)}
       >
         <Columns2 />
       </IconButton>
