@@ -157,6 +157,17 @@ test("editing", async ({ page, open }) => {
   await take(page, "curve");
 });
 
+test("slack", async ({ page, open }) => {
+  await open("one-cylinder");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("ring");
+  await page.getByRole("combobox", { name: "Unstressed L0" }).selectOption("rest_ratio");
+  await page.getByRole("textbox", { name: /^L0/ }).fill("3");
+  await page.getByRole("button", { name: "Apply to free rings" }).click();
+  await page.locator(".legend", { hasText: "slack" }).waitFor();
+  await converged(page);
+  await take(page, "slack");
+});
+
 test("supports", async ({ page, open }) => {
   await open("three-cylinders");
   const anchor = await anchorPlace(page, "A4");

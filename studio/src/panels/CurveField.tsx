@@ -50,7 +50,7 @@ export function CurveField({
           text='The first row names the columns and their units, such as "strain [%],force [N]"'
           side="left"
         >
-          <button type="button" className="button" onClick={() => field.current?.click()}>
+          <button type="button" className="button icon" onClick={() => field.current?.click()}>
             <FileUp /> Load a CSV file
           </button>
         </Hint>
