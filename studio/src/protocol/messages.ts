@@ -427,7 +427,7 @@ export interface PlanGraft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
+   * Steps: quarter turns, or round an anchor from cell to cell while the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
@@ -453,7 +453,7 @@ export interface Graft {
    */
   anchor: string | null;
   /**
-   * Steps: quarter turns, or round an anchor from cell to cell as far as the patch stays whole.
+   * Steps: quarter turns, or round an anchor from cell to cell while the patch stays whole.
    */
   rotate: number;
   mirror: boolean;
