@@ -115,25 +115,95 @@ def test_a_buckled_rod_is_the_elastica(degrees: float, record_property: Any) -> 
         assert_order(values, record_property, name)
 
 
+def strut(count: int, load: float, axial: float, *, rise: float = 0.0) -> sf.Network:
+    """A rod of length 1 and EI = 1 on a pin, pushed at its other end, which stays on the axis."""
+    positions = np.zeros((count + 1, 3))
+    positions[:, 0] = np.linspace(0, 1, count + 1)
+    positions[:, 2] = rise * np.sin(np.pi * positions[:, 0])
+    loads = np.zeros((count + 1, 3))
+    loads[-1, 0] = -load
+    return sf.Network(
+        positions, list(pairwise(range(count + 1))), [0], axial_stiffness=axial,
+        rest_length=1 / count, loads=loads,
+        rods=[sf.Rod(range(count + 1), 1.0, lengths=[1 / count] * count)],
+        fixed_axes=[*in_plane(count + 1), (count, "z")],
+    )  # fmt: skip
+
+
+def elastica(load: float) -> tuple[float, float]:
+    """Distance of the ends and rise of a strut of length 1 and EI = 1 above its buckling load."""
+    parameter = brentq(lambda m: (2 * ellipk(m)) ** 2 - load, 1e-15, 1 - 1e-15, xtol=1e-16)
+    whole = ellipk(parameter)
+    return 2 * ellipe(parameter) / whole - 1, float(np.sqrt(parameter)) / whole
+
+
 def test_a_straight_rod_buckles_at_eulers_load() -> None:
-    count = 32
-    critical = {}
-    for load in (0.98 * np.pi**2, 1.02 * np.pi**2):
-        positions = np.zeros((count + 1, 3))
-        positions[:, 0] = np.linspace(0, 1, count + 1)
-        positions[:, 2] = 1e-3 * np.sin(np.pi * positions[:, 0])
-        loads = np.zeros((count + 1, 3))
-        loads[-1, 0] = -load
-        network = sf.Network(
-            positions, list(pairwise(range(count + 1))), [0], axial_stiffness=1e6,
-            rest_length=1 / count, loads=loads,
-            rods=[sf.Rod(range(count + 1), 1.0, lengths=[1 / count] * count)],
-            fixed_axes=[*in_plane(count + 1), (count, "z")],
+    # The second as straight as can be: Newton's steps end there above the load too.
+    for rise in (1e-3, 0.0):
+        below, above = (
+            np.abs(solved(strut(32, load, 1e6, rise=rise), ROUNDING).positions[:, 2]).max()
+            for load in (0.98 * np.pi**2, 1.02 * np.pi**2)
+        )
+        assert below < 1e-6
+        assert above > 0.1
+
+
+@pytest.mark.parametrize("share", [1.1, 1.5, 2.0])
+def test_a_straight_strut_above_eulers_load_becomes_the_elastica(
+    share: float, record_property: Any
+) -> None:
+    load = share * np.pi**2
+    distance, rise = elastica(load)
+    errors: dict[str, list[float]] = {"distance": [], "rise": []}
+    for count in COUNTS[1:]:
+        result = solved(strut(count, load, AXIAL), ROUNDING)
+        errors["distance"].append(abs(result.positions[-1, 0] - distance))
+        errors["rise"].append(abs(np.abs(result.positions[:, 2]).max() - rise))
+    for name, values in errors.items():
+        assert_order(values, record_property, name)
+
+
+@pytest.mark.parametrize(("axial", "share"), [(1e6, 4.0), (1e8, 4.0), (1e6, 9.5), (1e8, 20.0)])
+def test_a_strut_far_above_eulers_load_turns_over(axial: float, share: float) -> None:
+    # Beyond 2.18 times the load, where its ends meet, the elastica is unstable too: the rod
+    # ends straight on the other side of its pin, pulled.
+    load = share * np.pi**2
+    result = solved(strut(32, load, axial), 1e-15 * axial)
+    assert result.positions[-1, 0] == pytest.approx(-1 - load / axial, rel=1e-9)
+    np.testing.assert_allclose(result.forces, load, rtol=1e-6)
+    np.testing.assert_allclose(result.positions[:, 2], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_toggle_leaves_its_plane_of_symmetry(share: float) -> None:
+    """Two bars up to a loaded top, which goes over sideways where its stiffness across is lost."""
+    half, height, rest, axial = 1.0, 4.0, np.hypot(1.0, 4.0), 1e3
+
+    def across(down: float) -> float:
+        size = np.hypot(half, height - down)
+        force = axial * (size / rest - 1)
+        return axial / rest * (half / size) ** 2 + force / size * (1 - (half / size) ** 2)
+
+    critical = brentq(across, 0.0, 1.0)
+    down = share * critical
+    size = np.hypot(half, height - down)
+    load = -2 * axial * (size / rest - 1) * (height - down) / size
+    network = sf.Network(
+        [[-half, 0, 0], [half, 0, 0], [0, 0, height]], [(0, 2), (1, 2)], [0, 1],
+        axial_stiffness=axial, rest_length=rest, sense="both",
+        loads=[[0, 0, 0], [0, 0, 0], [0, 0, -load]],
+        fixed_axes=[(2, "y")],
+    )  # fmt: skip
+    result = solved(network)
+    if share < 1:
+        top = height - down
+    else:
+        # Every rest above the supports is unstable now: the top hangs below them.
+        top = brentq(
+            lambda z: 2 * axial * (np.hypot(half, z) / rest - 1) * -z / np.hypot(half, z) - load,
+            -2 * height, -height,
         )  # fmt: skip
-        critical[load] = np.abs(solved(network, ROUNDING).positions[:, 2]).max()
-    below, above = critical.values()
-    assert below < 1e-6
-    assert above > 0.1
+    np.testing.assert_allclose(result.positions[2], [0, 0, top], atol=1e-7)
 
 
 def ring(count: int, push: float) -> sf.Equilibrium:

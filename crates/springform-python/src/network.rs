@@ -214,6 +214,9 @@ fn equilibrium_dict<'py>(
             format!("node {node} is held by no springs that lead to a fixed node")
         }
         Status::Singular => format!("the stiffness matrix is singular or numbers overflowed{at_worst}"),
+        Status::UnstableRest => {
+            "the net balances where it would not stay, as a straight strut above its buckling load".to_owned()
+        }
         Status::Unstable => {
             format!(
                 "the loads that follow the shape drive the net away, residual {:.2e}{at_worst}",

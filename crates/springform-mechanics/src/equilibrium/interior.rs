@@ -1,6 +1,7 @@
 //! The interior-point phase for stiff and far-off nets: tensions as unknowns of their own.
 
 use super::descent::Hill;
+use super::mixed::extent;
 use super::tangent::{Tangent, along, block, links, own_bend_stiffness, spring_tangent};
 use crate::network::{Network, Sense};
 use crate::sparse::Lanes;
@@ -111,11 +112,7 @@ pub(super) fn interior(
 /// Span [m] and force [N] that measure an interior-point step.
 fn scales(hill: Hill<'_>, positions: &[Lanes]) -> (f64, f64) {
     let network = hill.network;
-    let extent = |axis: usize| {
-        let along = || positions.iter().map(|position| position[axis]);
-        along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
-    };
-    let span = (0..3).map(extent).fold(0.0, f64::max);
+    let span = extent(positions);
     let loads: f64 = hill.elements.loads().iter().map(|&[x, y, z, _]| length([x, y, z])).sum();
     let force = loads + network.force.iter().map(|force| force.abs()).fold(0.0, f64::max);
     let stiffness = || network.stiffness.iter().sum::<f64>() / network.springs.len() as f64;

@@ -6,6 +6,7 @@
 //!        ├ newton      weak prestress, rods, last digits: the exact tangent
 //!        ├ mixed       rods first: tensions that follow the step, which may be long
 //!        ├ interior    stiff and far-off nets: tensions as unknowns of their own
+//!        ├ stability   springs that push, rods: is it a rest that lasts, and where to if not
 //!        └ followers   around all of these: loads that follow the shape
 //! ```
 //!
@@ -23,6 +24,7 @@ mod mixed;
 mod newton;
 pub mod sensitivity;
 mod solver;
+mod stability;
 mod state;
 mod supports;
 mod tangent;

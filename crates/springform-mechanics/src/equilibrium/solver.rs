@@ -7,6 +7,7 @@ use super::interior::{MOST_INTERIOR, interior};
 use super::linear::Linear;
 use super::mixed::{MOST_MIXED, mixed};
 use super::newton::{Change, Ended, Newton};
+use super::stability::{may_be_unstable, way_off};
 use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
 use super::supports::Supports;
 use super::tangent::{Layout, along};
@@ -94,7 +95,7 @@ impl Solver {
             self.follow(network, settings)
         } else {
             let (positions, status, iterations, method) =
-                self.still(network, settings, &network.positions, &[], settings.iterations);
+                self.still(network, settings, &network.positions, None, settings.iterations);
             // Numbers overflowed: the start tells more than what is left of them.
             let lost = positions.iter().flatten().any(|coordinate| !coordinate.is_finite());
             let (positions, status) =
@@ -124,7 +125,7 @@ impl Solver {
             let mut loads = vec![[0.0; 3]; start.len()];
             follow(network, &start, &mut loads);
             let left = settings.iterations.saturating_sub(iterations);
-            let (moved, status, used, method) = self.still(network, &inner, &start, &loads, left);
+            let (moved, status, used, method) = self.still(network, &inner, &start, Some(&loads), left);
             iterations += used;
             let state =
                 Equilibrium { method, ..Equilibrium::at(network, moved, Status::Converged, iterations) };
@@ -151,22 +152,62 @@ impl Solver {
         )
     }
 
-    /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method.
+    /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method. Loads that follow
+    /// the shape, which `more` stands for, have a say in what is stable; without them the rest is stable, or unstable by
+    /// its status.
     fn still(
         &mut self,
         network: &Network<'_>,
         settings: &Settings,
         start: &[Vector],
-        more: &[Vector],
+        more: Option<&[Vector]>,
         limit: u32,
     ) -> (Vec<Vector>, Status, u32, Method) {
-        self.elements.build(network, more);
+        self.elements.build(network, more.unwrap_or_default());
         let mut positions = std::mem::take(&mut self.positions);
         parted(network, &self.supports, start, &mut positions);
-        let (status, iterations, method) = self.move_to_rest(network, settings, &mut positions, limit);
+        let (status, iterations, method) = if more.is_some() {
+            self.move_to_rest(network, settings, &mut positions, limit)
+        } else {
+            self.move_to_stable_rest(network, settings, &mut positions, limit)
+        };
         let moved = positions.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
         self.positions = positions;
         (moved, status, iterations, method)
+    }
+
+    /// Moves to rest, and on from where rest is unstable, as a straight strut above its buckling load.
+    fn move_to_stable_rest(
+        &mut self,
+        network: &Network<'_>,
+        settings: &Settings,
+        positions: &mut Vec<Lanes>,
+        limit: u32,
+    ) -> (Status, u32, Method) {
+        let (mut status, mut iterations, mut method) = self.move_to_rest(network, settings, positions, limit);
+        loop {
+            let settled = matches!(status, Status::Converged | Status::Singular);
+            if !settled || !may_be_unstable(network, positions) {
+                return (status, iterations, method);
+            }
+            let Solver { supports, elements, layout, newton, .. } = self;
+            let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
+            let Some(mut moved) = way_off(hill, &mut newton.tangent, positions) else {
+                return (status, iterations, method);
+            };
+            if iterations >= limit {
+                return (Status::UnstableRest, iterations, method);
+            }
+            // The step off counts too, so that there is an end of it.
+            iterations += 1;
+            let (next, steps, by) = self.move_to_rest(network, settings, &mut moved, limit - iterations);
+            iterations += steps;
+            if next == Status::Singular && status == Status::Converged {
+                return (Status::UnstableRest, iterations, method);
+            }
+            *positions = moved;
+            (status, method) = (next, by);
+        }
     }
 
     /// The method that fits first, then the next where it does not get there.
@@ -189,11 +230,7 @@ impl Solver {
         }
         if !elements.bends.is_empty() {
             let patience = MOST_MIXED.min(limit - iterations);
-            let (moved, steps) = mixed(hill, &mut newton.tangent, positions, settings.tolerance, patience);
-            iterations += steps;
-            if Change::new(hill, positions, &moved).energy < 0.0 {
-                *positions = moved;
-            }
+            iterations += mixed(hill, &mut newton.tangent, positions, settings.tolerance, patience);
         }
         let patience = PATIENCE.min(limit - iterations);
         let (ended, steps) = newton.solve(hill, positions, settings, patience);

@@ -35,8 +35,10 @@ pub enum Status {
     },
     /// The tangent is singular or a number overflowed.
     Singular,
-    /// Loads that follow the shape, or pushing springs, drive the net away.
+    /// Loads that follow the shape drive the net away.
     Unstable,
+    /// The residual is within the tolerance, but the energy falls beside this rest, and no stable one was found.
+    UnstableRest,
 }
 
 /// How an equilibrium was found.

@@ -1,0 +1,116 @@
+//! Whether a rest is stable, and a way off it if it is not.
+//!
+//! A straight strut above its buckling load is in balance, and Newton's steps end there: only the second change of the
+//! energy tells that it is no rest. Inverse iteration with the exact tangent, shifted until it is positive definite, finds
+//! the direction of least curvature (Wilkinson, "The algebraic eigenvalue problem", 1965), and the net goes along it as
+//! far as the energy falls.
+
+use super::descent::Hill;
+use super::elements::vector;
+use super::mixed::extent;
+use super::newton::Change;
+use super::tangent::{Tangent, along, links, moduli, own_bend_stiffness, own_stiffness, spring_tangent};
+use crate::network::{Network, Sense};
+use crate::sparse::Lanes;
+use crate::vector::length;
+
+/// The least shift, as a share of what may make the tangent indefinite, and its factor from one to the next.
+const LEAST_SHIFT: f64 = 1e-10;
+const SHIFT_FACTOR: f64 = 4.0;
+
+/// Shifts that are tried; the last is larger than what any tangent can need.
+const MOST_SHIFTS: u32 = 20;
+
+/// Share of a spring's own stiffness in the shift, for nodes that slack springs alone hold.
+const SLACK_SHARE: f64 = 1e-6;
+
+/// Inverse iterations towards the direction of least curvature.
+const INVERSE_STEPS: u32 = 40;
+
+/// Shortest and longest move off an unstable rest, as shares of the extent of the net; each is twice the last.
+const SHORTEST_MOVE: f64 = 1e-7;
+const LONGEST_MOVE: f64 = 0.1;
+
+/// Whether anything in a net can make a rest unstable: springs that push there, or rods. A spring that pulls can't, nor
+/// can dead loads.
+pub(super) fn may_be_unstable(network: &Network<'_>, positions: &[Lanes]) -> bool {
+    let pushes = |spring| {
+        let pushing = network.sense[spring] != Sense::Tension;
+        pushing && network.force_at(spring, length(along(network, spring, positions))) < 0.0
+    };
+    !network.rods.is_empty() || (0..network.springs.len()).any(pushes)
+}
+
+/// Positions of a lower energy beside an unstable rest; `None` if the rest is stable as far as rounding shows.
+pub(super) fn way_off(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes]) -> Option<Vec<Lanes>> {
+    if factor(hill, tangent, positions, 0.0) {
+        return None;
+    }
+    let mut shift = LEAST_SHIFT;
+    let shifted = (0..MOST_SHIFTS).any(|_| {
+        let factored = factor(hill, tangent, positions, shift);
+        shift *= SHIFT_FACTOR;
+        factored
+    });
+    if !shifted {
+        return None;
+    }
+    // Different at each node and axis, so that no symmetry hides the direction.
+    let mut way: Vec<Lanes> = (0..positions.len())
+        .map(|node| [1.0, 1.1, 1.3, 0.0].map(|part: f64| part * (1.0 + 0.1 * (node % 7) as f64)))
+        .collect();
+    hill.supports.keep_free(&mut way);
+    for _ in 0..INVERSE_STEPS {
+        tangent.solve(hill.supports, &mut way);
+        let longest = way.iter().map(|way| length(vector(*way))).fold(0.0, f64::max);
+        if !(longest > 0.0 && longest.is_finite()) {
+            return None;
+        }
+        way.iter_mut().flatten().for_each(|part| *part /= longest);
+    }
+    lowest_along(hill, positions, &way)
+}
+
+/// The first low place along a direction, either way, if the energy falls at all.
+fn lowest_along(hill: Hill<'_>, positions: &[Lanes], way: &[Lanes]) -> Option<Vec<Lanes>> {
+    let extent = extent(positions);
+    let mut lowest: Option<(f64, Vec<Lanes>)> = None;
+    let mut share = SHORTEST_MOVE;
+    while share <= LONGEST_MOVE {
+        let moved = [share * extent, -share * extent].map(|size| {
+            let step =
+                |(position, way): (&Lanes, &Lanes)| std::array::from_fn(|at| position[at] + size * way[at]);
+            let mut moved: Vec<Lanes> = positions.iter().zip(way).map(step).collect();
+            hill.supports.put_back(hill.network, &mut moved);
+            (Change::new(hill, positions, &moved), moved)
+        });
+        let [one, other] = moved;
+        let (change, moved) = if other.0.energy < one.0.energy { other } else { one };
+        let falls = change.energy < -10.0 * change.noise;
+        match &lowest {
+            Some((least, _)) if !falls || change.energy >= *least => break,
+            _ if falls => lowest = Some((change.energy, moved)),
+            _ => {}
+        }
+        share *= 2.0;
+    }
+    lowest.map(|(_, moved)| moved)
+}
+
+/// Factors the exact tangent plus a share of what may make it indefinite; false if that is not positive definite.
+fn factor(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes], shift: f64) -> bool {
+    let Hill { network, elements, supports, layout, .. } = hill;
+    let springs = (0..network.springs.len()).map(|spring| {
+        let along = along(network, spring, positions);
+        let size = length(along);
+        // What springs do across their direction may make a tangent indefinite.
+        let across = moduli(network, spring, size)[1].abs();
+        let own = across.max(SLACK_SHARE * own_stiffness(network, spring, size));
+        (spring_tangent(network, spring, along, false), shift * own)
+    });
+    let bends = elements.bends.iter().map(|bend| {
+        let stiffness = bend.bending(links(bend, positions), false).stiffness;
+        (stiffness, shift * own_bend_stiffness(bend))
+    });
+    tangent.factor(layout, supports, springs, bends).is_ok()
+}
