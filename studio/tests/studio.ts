@@ -19,15 +19,18 @@ export interface Studio {
   kill(): Promise<void>;
 }
 
-/** Starts a studio on a source, in a folder of documents. */
-export async function startStudio(home: string, source?: string, port = 0): Promise<Studio> {
+/** Starts a studio on a source, in a folder of documents; without a port (null) on that of last time. */
+export async function startStudio(
+  home: string,
+  source?: string,
+  port: number | null = 0,
+): Promise<Studio> {
   const words = [
     "studio",
     ...(source ? [source] : []),
     "--home",
     home,
-    "--port",
-    String(port),
+    ...(port === null ? [] : ["--port", String(port)]),
     "--no-browser",
     "--json",
   ];

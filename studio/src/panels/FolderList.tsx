@@ -45,7 +45,9 @@ export function FolderList({
         >
           <ArrowUp />
         </button>
-        <span>{folder?.path ?? "Loading …"}</span>
+        <span>
+          <bdi>{folder?.path ?? "Loading …"}</bdi>
+        </span>
       </div>
       {problem && (
         <p className="problem" role="alert">
@@ -62,7 +64,9 @@ export function FolderList({
             </button>
           </li>
         ))}
-        {folder && !folder.entries.length && <li className="empty">No designs or folders here.</li>}
+        {folder && !folder.entries.length && (
+          <li className="folder-empty">No designs or folders here.</li>
+        )}
       </ul>
     </div>
   );

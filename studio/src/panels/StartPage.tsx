@@ -119,12 +119,12 @@ export function StartPage() {
               Open
             </button>
           </form>
-          <FolderList onPick={(found) => open(found, setFileProblem)} />
           {fileProblem && (
-            <p className="problem" role="alert">
+            <p className="problem" role="alert" ref={intoView}>
               {fileProblem}
             </p>
           )}
+          <FolderList onPick={(found) => open(found, setFileProblem)} />
         </section>
       </div>
     </main>
@@ -163,6 +163,10 @@ function Recent({ entry, onRemove }: { entry: DocumentEntry; onRemove(id: string
       </Hint>
     </li>
   );
+}
+
+function intoView(element: HTMLElement | null): void {
+  element?.scrollIntoView({ block: "nearest" });
 }
 
 /** Says that a document is ahead of its file, and offers to go back to it. */
