@@ -156,7 +156,8 @@ def test_a_straight_strut_above_eulers_load_becomes_the_elastica(
     distance, rise = elastica(load)
     errors: dict[str, list[float]] = {"distance": [], "rise": []}
     for count in COUNTS[1:]:
-        result = solved(strut(count, load, AXIAL), ROUNDING)
+        # A link is as stiff as it is short, and positions round the same.
+        result = solved(strut(count, load, AXIAL), count * ROUNDING)
         errors["distance"].append(abs(result.positions[-1, 0] - distance))
         errors["rise"].append(abs(np.abs(result.positions[:, 2]).max() - rise))
     for name, values in errors.items():
