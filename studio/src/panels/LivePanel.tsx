@@ -73,6 +73,7 @@ const LABELS: Texts = {
 };
 
 function LiveParameters({ live }: { live: LiveState }) {
+  const [open, setOpen] = useState(false);
   const [problems, setProblems] = useState<Texts>({});
   const texts: Texts = Object.fromEntries(
     SET.map((name) => [name, textOf(name, live.parameters[name])]),
@@ -89,19 +90,21 @@ function LiveParameters({ live }: { live: LiveState }) {
   };
   const changed = live.changed.length;
   return (
-    <details className="live-parameters">
+    <details className="live-parameters" onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>
         Parameters of live evolution
         {changed > 0 && <span className="aside">{changed} changed</span>}
       </summary>
       <p className="explain">Changes count from the next generation on.</p>
-      <ParameterFields
-        names={SET}
-        texts={texts}
-        problems={problems}
-        labels={LABELS}
-        onTake={take}
-      />
+      {open && (
+        <ParameterFields
+          names={SET}
+          texts={texts}
+          problems={problems}
+          labels={LABELS}
+          onTake={take}
+        />
+      )}
       {changed > 0 && (
         <button
           type="button"
