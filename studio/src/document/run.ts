@@ -57,8 +57,13 @@ export async function moreIndividuals(before: Individuals): Promise<Individuals>
 
 /** Rows of the Pareto set: no other has as many springs at a lower differential. Ascending in springs. */
 export function paretoOf({ springs, differential }: Individuals): number[] {
-  const rows = [...differential.keys()].filter((row) => Number.isFinite(differential[row]));
-  rows.sort((a, b) => springs[b] - springs[a] || differential[a] - differential[b]);
+  const least = new Map<number, number>();
+  for (let row = 0; row < springs.length; row++) {
+    if (!Number.isFinite(differential[row])) continue;
+    const best = least.get(springs[row]);
+    if (best === undefined || differential[row] < differential[best]) least.set(springs[row], row);
+  }
+  const rows = [...least.values()].sort((a, b) => springs[b] - springs[a]);
   const front: number[] = [];
   let lowest = Number.POSITIVE_INFINITY;
   for (const row of rows) {

@@ -109,27 +109,25 @@ function SharedLegend() {
       id === quantity.id || !applies || nets.every((one) => one && applies(one.net)),
   );
   return (
-    <section className="floating legend" aria-label="Legend of both nets">
-      <header>
-        <Choice
-          label="Colour both nets by"
-          hidden
-          value={quantity.id}
-          options={options.map(({ id, name }) => ({ value: id, name }))}
-          onTake={(by: QuantityId) => changeColour({ by })}
-        />
-      </header>
-      <div className="scale-bar" style={{ background: cssGradient(colour.palette, theme) }} />
-      <div className="scale-ticks">
-        <span>{inDigits(scale.low)}</span>
-        <span>{inDigits(valueAt(scale, 0.5))}</span>
-        <span>
-          {inDigits(scale.high)} {quantity.unit}
-        </span>
+    <section className="floating shared-legend" aria-label="Legend of both nets">
+      <Choice
+        label="Colour both nets by"
+        hidden
+        value={quantity.id}
+        options={options.map(({ id, name }) => ({ value: id, name }))}
+        onTake={(by: QuantityId) => changeColour({ by })}
+      />
+      <div>
+        <div className="scale-bar" style={{ background: cssGradient(colour.palette, theme) }} />
+        <div className="scale-ticks">
+          <span data-testid="shared-low">{inDigits(scale.low)}</span>
+          <span>{inDigits(valueAt(scale, 0.5))}</span>
+          <span data-testid="shared-high">
+            {inDigits(scale.high)} {quantity.unit}
+          </span>
+        </div>
       </div>
-      <footer>
-        <span>the same scale for both nets</span>
-      </footer>
+      <span className="shared-words">same scale for A and B</span>
     </section>
   );
 }

@@ -1,14 +1,14 @@
 // Evolution: its parameters, its course, all individuals, and what becomes of them.
-import { Columns2, Images } from "lucide-react";
+import { Columns2, Images, Pin, PinOff } from "lucide-react";
 import { compare } from "../document/comparing";
-import { lookAt, shownSide } from "../document/pins";
+import { lookAt, pinOfSide, shownSide, togglePin } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { ask, store } from "../document/store";
 import { ClusterSection, LineageSection } from "./Choosing";
 import { takeOver } from "./confirming";
 import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
-import { PinButton, PinnedSection } from "./Pins";
+import { PinnedSection } from "./Pins";
 import { IconButton, Section } from "./parts";
 import { changeableOf, RunSection } from "./RunSection";
 import { Scatter } from "./Scatter";
@@ -56,6 +56,8 @@ export function LookingBanner() {
   const figures = useStudio((state) => state.document?.figures);
   const own = useStudio((state) => state.document?.own);
   const run = useStudio((state) => state.run);
+  const shown = useStudio((state) => shownSide(state.document));
+  const pinned = useStudio((state) => pinOfSide(state, shown) !== null);
   if (!looking || !figures || !own) return null;
   return (
     <div className="looking" role="status">
@@ -85,11 +87,18 @@ export function LookingBanner() {
       <button type="button" className="button" onClick={() => lookAt("design")}>
         Back to my design
       </button>
-      <PinButton />
+      <IconButton
+        label={pinned ? "Unpin it" : "Pin it"}
+        keys="P"
+        pressed={pinned}
+        onClick={() => togglePin(shown)}
+      >
+        {pinned ? <PinOff /> : <Pin />}
+      </IconButton>
       <IconButton
         label="Compare with my design"
         keys="Shift+P"
-        onClick={() => compare("design", shownSide(store.getState().document))}
+        onClick={() => compare("design", shown)}
       >
         <Columns2 />
       </IconButton>

@@ -79,9 +79,7 @@ function useShown(): { rows: Uint32Array; generations: number } {
   return useMemo(() => {
     const pinned = only ? new Set(pinnedRows(individuals, pins, name)) : null;
     const rows = pinned ? ranking.rows.filter((row) => pinned.has(row)) : ranking.rows;
-    const made = new Set<number>();
-    for (const row of rows) made.add(Math.floor(row / individuals.population));
-    return { rows, generations: made.size };
+    return { rows, generations: byGeneration(individuals, rows).generations.length };
   }, [individuals, ranking, pins, only, name]);
 }
 

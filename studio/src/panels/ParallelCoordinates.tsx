@@ -11,6 +11,7 @@ import {
 import { pinnedRows } from "../document/pins";
 import { inDigits } from "../document/scale";
 import { store } from "../document/store";
+import { drawSoon, penOf } from "./canvas";
 import { colourOfShade, shadeOf, useRanking } from "./Sorting";
 import { useStudio } from "./use";
 
@@ -54,74 +55,77 @@ export function ParallelCoordinates() {
   const looking = useStudio((state) => state.document?.looking ?? null);
   const mask = Object.keys(brushes).length > 0;
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (!context || !canvas.current) return;
-    const ratio = Math.min(devicePixelRatio, 2);
-    canvas.current.width = WIDTH * ratio;
-    canvas.current.height = HEIGHT * ratio;
-    context.scale(ratio, ratio);
-    const styles = getComputedStyle(document.documentElement);
-    const colour = (name: string) => styles.getPropertyValue(name).trim();
-    const count = individuals.springs.length;
-    const line = (row: number) => {
-      AXES.forEach((axis, at) => {
-        const share = shareOf(axis, ranges[at], placeOnAxis(individuals, axis.id, row));
-        if (!Number.isFinite(share)) return;
-        if (at) context.lineTo(x(at), y(share));
-        else context.moveTo(x(at), y(share));
-      });
-    };
-    context.lineWidth = 0.6;
-    context.strokeStyle = colour("--line-strong");
-    context.globalAlpha = 0.35;
-    context.beginPath();
-    for (let row = 0; row < count; row += Math.max(1, Math.ceil(count / MOST_LINES)))
-      if (ranking.place[row] < 0) line(row);
-    context.stroke();
-    const { rows } = ranking;
-    const step = Math.max(1, Math.ceil(rows.length / MOST_LINES));
-    const drawn = Math.ceil(rows.length / step);
-    context.globalAlpha = Math.max(0.12, Math.min(0.8, 12 / Math.sqrt(drawn + 1)));
-    context.beginPath();
-    let shade = -1;
-    // The first of the ranking are drawn last, so that they lie on top.
-    for (let at = drawn - 1; at >= 0; at--) {
-      const wanted = shadeOf(shareOfPlace(ranking, at * step));
-      if (wanted !== shade) {
-        context.stroke();
-        context.beginPath();
-        context.strokeStyle = colourOfShade(wanted, theme);
-        shade = wanted;
-      }
-      line(rows[at * step]);
-    }
-    context.stroke();
-    context.globalAlpha = 1;
-    context.lineWidth = 1.6;
-    const marked = (name: string, row: number) => {
-      if (row >= count) return;
-      context.strokeStyle = colour(name);
+    const draw = () => {
+      const context = canvas.current && penOf(canvas.current, WIDTH, HEIGHT);
+      if (!context) return;
+      const styles = getComputedStyle(document.documentElement);
+      const colour = (name: string) => styles.getPropertyValue(name).trim();
+      const count = individuals.springs.length;
+      const line = (row: number) => {
+        AXES.forEach((axis, at) => {
+          const share = shareOf(axis, ranges[at], placeOnAxis(individuals, axis.id, row));
+          if (!Number.isFinite(share)) return;
+          if (at) context.lineTo(x(at), y(share));
+          else context.moveTo(x(at), y(share));
+        });
+      };
+      context.lineWidth = 0.6;
+      context.strokeStyle = colour("--line-strong");
+      context.globalAlpha = 0.35;
       context.beginPath();
-      line(row);
+      for (let row = 0; row < count; row += Math.max(1, Math.ceil(count / MOST_LINES)))
+        if (ranking.place[row] < 0) line(row);
       context.stroke();
+      const { rows } = ranking;
+      const step = Math.max(1, Math.ceil(rows.length / MOST_LINES));
+      const drawn = Math.ceil(rows.length / step);
+      context.globalAlpha = Math.max(0.12, Math.min(0.8, 12 / Math.sqrt(drawn + 1)));
+      context.beginPath();
+      let shade = -1;
+      // The first of the ranking are drawn last, so that they lie on top.
+      for (let at = drawn - 1; at >= 0; at--) {
+        const wanted = shadeOf(shareOfPlace(ranking, at * step));
+        if (wanted !== shade) {
+          context.stroke();
+          context.beginPath();
+          context.strokeStyle = colourOfShade(wanted, theme);
+          shade = wanted;
+        }
+        line(rows[at * step]);
+      }
+      context.stroke();
+      context.globalAlpha = 1;
+      const marked = (name: string, width: number, row: number) => {
+        if (row >= count) return;
+        context.lineWidth = width;
+        context.strokeStyle = colour(name);
+        context.beginPath();
+        line(row);
+        context.stroke();
+      };
+      for (const row of pinnedRows(individuals, pins, name))
+        if (ranking.place[row] >= 0) marked("--ink", 1.3, row);
+      if (looking?.generation != null && looking.individual != null)
+        marked(
+          "--accent",
+          2.4,
+          (looking.generation - 1) * individuals.population + looking.individual,
+        );
+      drawAxes(context, ranges, colour);
+      for (const [at, axis] of AXES.entries()) {
+        const brush = brushes[axis.id];
+        if (!brush) continue;
+        const [low, high] = brush.map((value) =>
+          y(Math.max(0, Math.min(1, shareOf(axis, ranges[at], value)))),
+        );
+        context.fillStyle = colour("--accent-soft");
+        context.strokeStyle = colour("--accent");
+        context.lineWidth = 1.2;
+        context.fillRect(x(at) - 6, high, 12, Math.max(2, low - high));
+        context.strokeRect(x(at) - 6, high, 12, Math.max(2, low - high));
+      }
     };
-    for (const row of pinnedRows(individuals, pins, name))
-      if (ranking.place[row] >= 0) marked("--warn", row);
-    if (looking?.generation != null && looking.individual != null)
-      marked("--ink", (looking.generation - 1) * individuals.population + looking.individual);
-    drawAxes(context, ranges, colour);
-    for (const [at, axis] of AXES.entries()) {
-      const brush = brushes[axis.id];
-      if (!brush) continue;
-      const [low, high] = brush.map((value) =>
-        y(Math.max(0, Math.min(1, shareOf(axis, ranges[at], value)))),
-      );
-      context.fillStyle = colour("--accent-soft");
-      context.strokeStyle = colour("--accent");
-      context.lineWidth = 1.2;
-      context.fillRect(x(at) - 6, high, 12, Math.max(2, low - high));
-      context.strokeRect(x(at) - 6, high, 12, Math.max(2, low - high));
-    }
+    return drawSoon(draw);
   }, [individuals, brushes, ranking, ranges, theme, pins, name, looking]);
 
   const shareUnder = (event: React.PointerEvent) => {

@@ -18,7 +18,7 @@ import { Thumbnail } from "./Thumbnail";
 import { useStudio } from "./use";
 
 /** Pins what is shown, or lets it go. */
-export function PinButton() {
+function PinButton() {
   const shown = useStudio((state) => shownSide(state.document));
   const pinned = useStudio((state) => pinOfSide(state, shown) !== null);
   return (
@@ -72,7 +72,7 @@ function PinLine({ pin }: { pin: PinState }) {
           event.ctrlKey || event.metaKey || event.shiftKey ? toggleMark(side) : lookAt(side)
         }
       >
-        <Thumbnail path={pathOfSide(document, side)} width={84} height={64} />
+        <Thumbnail path={pathOfSide(document, side)} width={72} height={56} />
       </button>
       <div>
         <b>{pin.label}</b>

@@ -1,11 +1,13 @@
 // All individuals of a run by springs and force differential; the Pareto set stands out. A click looks at one.
 import { useEffect, useMemo, useRef, useState } from "react";
-import { measureOf, shareOfPlace } from "../document/choosing";
+import { measureOf, type Ranking, shareOfPlace } from "../document/choosing";
+import type { Theme } from "../document/palettes";
 import { pinnedRows, type Side, sideOfRow } from "../document/pins";
 import { paretoOf, placeOf } from "../document/run";
 import { inDigits } from "../document/scale";
+import { drawSoon, penOf, pixelRatio } from "./canvas";
 import { clickSide, IndividualMenu } from "./IndividualMenu";
-import { colourOfShade, shadeOf, useRanking } from "./Sorting";
+import { pixelOfShare, useRanking } from "./Sorting";
 import { useStudio } from "./use";
 
 const HEIGHT = 190; // px
@@ -43,47 +45,35 @@ export function Scatter() {
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: x and y follow from the individuals
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (!context || !canvas.current) return;
-    const ratio = Math.min(devicePixelRatio, 2);
-    canvas.current.width = width * ratio;
-    canvas.current.height = HEIGHT * ratio;
-    context.scale(ratio, ratio);
-    const styles = getComputedStyle(document.documentElement);
-    const colour = (name: string) => styles.getPropertyValue(name).trim();
-    drawAxes(context, frame, width, colour("--line"), colour("--faint"));
-    context.globalAlpha = ranking.rows.length > 5000 ? 0.5 : 0.8;
-    let shade = -1;
-    // The first of the ranking are drawn last, so that they lie on top.
-    for (let place = ranking.rows.length - 1; place >= 0; place--) {
-      const row = ranking.rows[place];
-      const wanted = shadeOf(shareOfPlace(ranking, place));
-      if (wanted !== shade) context.fillStyle = colourOfShade(wanted, theme);
-      shade = wanted;
-      const at = y(row);
-      if (at >= EDGE.top - 1) context.fillRect(x(row) - 1, at - 1, 2, 2);
-    }
-    context.globalAlpha = 1;
-    context.strokeStyle = context.fillStyle = colour("--accent");
-    context.lineWidth = 1.4;
-    context.beginPath();
-    front.forEach((row, step) => {
-      if (step) context.lineTo(x(row), y(row));
-      else context.moveTo(x(row), y(row));
-    });
-    context.stroke();
-    for (const row of front) if (chosen(row)) dot(context, x(row), y(row), 2.6);
-    context.strokeStyle = colour("--warn");
-    context.lineWidth = 1.8;
-    for (const row of pinnedRows(individuals, pins, name))
-      if (chosen(row) && y(row) >= EDGE.top - 1) ring(context, x(row), y(row), 5);
-    const at =
-      looking?.generation != null && looking.individual != null
-        ? (looking.generation - 1) * individuals.population + looking.individual
-        : null;
-    context.fillStyle = colour("--ink");
-    for (const row of [at, over])
-      if (row !== null && row < individuals.springs.length) dot(context, x(row), y(row), 4.5);
+    const draw = () => {
+      const context = canvas.current && penOf(canvas.current, width, HEIGHT);
+      if (!context) return;
+      drawDots(context, ranking, theme, x, y);
+      const styles = getComputedStyle(document.documentElement);
+      const colour = (name: string) => styles.getPropertyValue(name).trim();
+      drawAxes(context, frame, width, colour("--line"), colour("--faint"));
+      context.strokeStyle = context.fillStyle = colour("--accent");
+      context.lineWidth = 1.4;
+      context.beginPath();
+      front.forEach((row, step) => {
+        if (step) context.lineTo(x(row), y(row));
+        else context.moveTo(x(row), y(row));
+      });
+      context.stroke();
+      for (const row of front) if (chosen(row)) dot(context, x(row), y(row), 2.6);
+      context.strokeStyle = colour("--ink");
+      context.lineWidth = 1.6;
+      for (const row of pinnedRows(individuals, pins, name))
+        if (chosen(row) && y(row) >= EDGE.top - 1) ring(context, x(row), y(row), 5);
+      const at =
+        looking?.generation != null && looking.individual != null
+          ? (looking.generation - 1) * individuals.population + looking.individual
+          : null;
+      context.fillStyle = colour("--ink");
+      for (const row of [at, over])
+        if (row !== null && row < individuals.springs.length) dot(context, x(row), y(row), 4.5);
+    };
+    return drawSoon(draw);
   }, [individuals, front, frame, theme, over, looking, ranking, pins, name]);
 
   const nearest = (event: React.MouseEvent): number | null => {
@@ -202,6 +192,31 @@ function drawAxes(
       HEIGHT - EDGE.bottom + 7,
     );
   }
+}
+
+/** A square of pixels an individual, the first of the ranking on top; as bytes, since there may be many thousands. */
+function drawDots(
+  context: CanvasRenderingContext2D,
+  ranking: Ranking,
+  theme: Theme,
+  x: (row: number) => number,
+  y: (row: number) => number,
+): void {
+  const { width, height } = context.canvas;
+  const image = context.createImageData(width, height);
+  const pixels = new Uint32Array(image.data.buffer);
+  const ratio = pixelRatio();
+  const size = Math.round(2 * ratio);
+  for (let place = ranking.rows.length - 1; place >= 0; place--) {
+    const row = ranking.rows[place];
+    const left = Math.round((x(row) - 1) * ratio);
+    const top = Math.round((y(row) - 1) * ratio);
+    if (!(top >= (EDGE.top - 2) * ratio && top + size < height && left >= 0)) continue;
+    const pixel = pixelOfShare(shareOfPlace(ranking, place), theme);
+    for (let line = top; line < top + size; line++)
+      pixels.fill(pixel, line * width + left, line * width + left + size);
+  }
+  context.putImageData(image, 0, 0);
 }
 
 function ring(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {

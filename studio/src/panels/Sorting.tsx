@@ -61,6 +61,13 @@ export function colourOfShade(shade: number, theme: Theme): string {
   return `rgb(${table[at]} ${table[at + 1]} ${table[at + 2]})`;
 }
 
+/** The same as a pixel of an image: alpha, blue, green and red, from the highest byte. */
+export function pixelOfShare(share: number, theme: Theme): number {
+  const table = tableOf(PALETTE, theme);
+  const at = 3 * Math.round(255 * (1 - share));
+  return ((0xff << 24) | (table[at + 2] << 16) | (table[at + 1] << 8) | table[at]) >>> 0;
+}
+
 /** What the colours in scatter and parallel coordinates mean. */
 export function RankLegend() {
   const individuals = useStudio((state) => state.individuals);

@@ -3,6 +3,7 @@ import { memo, useEffect, useRef } from "react";
 import { tableOf } from "../document/palettes";
 import { type Pictured, wish } from "../document/pictured";
 import { placeOn, scaleOf } from "../document/scale";
+import { penOf } from "./canvas";
 import { useStudio } from "./use";
 
 export const Thumbnail = memo(function Thumbnail({
@@ -42,12 +43,8 @@ function draw(
   height: number,
   table: Uint8Array,
 ): void {
-  const ratio = Math.min(devicePixelRatio, 2);
-  canvas.width = width * ratio;
-  canvas.height = height * ratio;
-  const context = canvas.getContext("2d");
+  const context = penOf(canvas, width, height);
   if (!context) return;
-  context.scale(ratio, ratio);
   const count = net.nodes.length;
   const places = new Float32Array(3 * count);
   const box = [Infinity, Infinity, -Infinity, -Infinity];

@@ -292,6 +292,7 @@ export class Viewport {
     const both = isComparing();
     this.eye.resize(both ? this.width / 2 : this.width, this.height);
     this.eye.controls.zoomToCursor = !both;
+    if (this.paired) this.eye.fit(null, false);
     this.redraw(true);
   }
 
