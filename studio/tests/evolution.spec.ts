@@ -33,6 +33,7 @@ test("a researcher evolves, changes course, and takes a net over", async ({ page
   await expect(page.getByRole("button", { name: "Continue" })).toBeVisible();
   await page.waitForTimeout(500);
   const paused = await generations(page);
+  await page.getByText("Parameters of runs").click();
   await page.getByLabel("Cells subdivided").fill("5%");
   await page.getByRole("button", { name: "Change from now on" }).click();
   await page.getByRole("button", { name: "Continue" }).click();

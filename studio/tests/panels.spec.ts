@@ -1,15 +1,6 @@
 // Panels, keys and menus: all can be reached without a mouse, and by screen readers.
-import AxeBuilder from "@axe-core/playwright";
 import type { Page } from "@playwright/test";
-import { anchorPlace, converged, documentOf, expect, test } from "./studio";
-
-async function accessible(page: Page): Promise<void> {
-  const { violations } = await new AxeBuilder({ page }).analyze();
-  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  expect(
-    serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(", ")}`),
-  ).toEqual([]);
-}
+import { accessible, anchorPlace, converged, documentOf, expect, test } from "./studio";
 
 test("no panel has serious findings of axe, dark or light", async ({ page, open }) => {
   await open();

@@ -4,6 +4,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
+import AxeBuilder from "@axe-core/playwright";
 import { test as base, expect, type Page } from "@playwright/test";
 import type { DocumentState, Opened, Opening } from "../src/protocol/messages";
 
@@ -66,6 +67,15 @@ export async function documentOf(page: Page): Promise<DocumentState> {
 /** Waits until the net has come to rest at equilibrium. */
 export async function converged(page: Page): Promise<void> {
   await expect(page.locator(".badge")).toHaveText("converged");
+}
+
+/** Nothing on the page is a serious finding of axe. */
+export async function accessible(page: Page): Promise<void> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  expect(
+    serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(", ")}`),
+  ).toEqual([]);
 }
 
 /** Where an anchor is on the page [px]. */

@@ -58,7 +58,7 @@ const ALL = {
   fitness: {
     label: "Best is the least",
     explanation:
-      "What mutants are compared by. Spring utilization: how much the force differential rose for every spring that came since the start.",
+      "What mutants are compared by. Spring utilization: how much the force differential rose for every spring that came since the start. Force differential: the largest force over the smallest, however many springs there are.",
     kind: "choice",
     options: [
       { value: "suf", name: "spring utilization" },
@@ -68,7 +68,7 @@ const ALL = {
   selection: {
     label: "The parent",
     explanation:
-      "Whether the best mutant is the next parent even if it is worse than its own, which leads out of dead ends.",
+      "Always gives way: the best mutant is the next parent even if it is worse than its own, which leads out of dead ends, and away from good nets. Stays while it is best: only a better mutant replaces it.",
     kind: "choice",
     options: [
       { value: "comma", name: "always gives way" },

@@ -149,6 +149,7 @@ function Body({ box, shelves }: { box: RefObject<HTMLDivElement | null>; shelves
   const [hovered, setHovered] = useState<number | null>(null);
   const [menu, setMenu] = useState<Side | null>(null);
   const pinned = usePinned();
+  const generations = useStudio((state) => state.run?.rows);
   const folder = useStudio((state) => state.run?.state.folder ?? "");
   const document = useStudio((state) => state.document?.document ?? "");
   const sort = useStudio((state) => state.sort);
@@ -195,11 +196,21 @@ function Body({ box, shelves }: { box: RefObject<HTMLDivElement | null>; shelves
                 className="gallery-row"
                 style={{ transform: `translateY(${row.start}px)`, height: HEIGHT }}
               >
-                <b>{shelves.labelOf(row.index).toLocaleString("en")}</b>
+                <b>
+                  {shelves.labelOf(row.index).toLocaleString("en")}
+                  {sort.byGeneration &&
+                    generations?.[shelves.labelOf(row.index) - 1]?.winner === null && (
+                      <small title="No mutant of this generation was better: its parent is of an earlier one">
+                        parent stays
+                      </small>
+                    )}
+                </b>
                 {columns.getVirtualItems().map((column) => {
                   const at = shelf[column.index];
                   if (at === undefined) return null;
                   const side = sideOfRow(individuals, at);
+                  const place = placeOf(individuals, at);
+                  const chosen = generations?.[place.generation - 1]?.winner === place.individual;
                   return (
                     <Cell
                       key={at}
@@ -211,6 +222,7 @@ function Body({ box, shelves }: { box: RefObject<HTMLDivElement | null>; shelves
                       sort={sort}
                       current={side === current}
                       marked={marked.includes(side)}
+                      chosen={chosen}
                       start={column.start}
                       pinned={pinned.has(at)}
                       hovered={hovered === at}
@@ -244,6 +256,7 @@ const Cell = memo(function Cell({
   sort,
   current,
   marked,
+  chosen,
   start,
   pinned,
   hovered,
@@ -258,6 +271,8 @@ const Cell = memo(function Cell({
   /** Whether it is looked at. */
   current: boolean;
   marked: boolean;
+  /** Whether it became the parent. */
+  chosen: boolean;
   start: number;
   pinned: boolean;
   hovered: boolean;
@@ -275,7 +290,7 @@ const Cell = memo(function Cell({
         className={marked ? "gallery-cell marked" : "gallery-cell"}
         data-side={side}
         aria-pressed={current}
-        aria-label={`Generation ${generation}, individual ${individual}: ${springs} springs, force differential ${differential}${pinned ? ", pinned" : ""}${marked ? ", marked" : ""}`}
+        aria-label={`Generation ${generation}, individual ${individual}: ${springs} springs, force differential ${differential}${chosen ? ", the parent" : ""}${pinned ? ", pinned" : ""}${marked ? ", marked" : ""}`}
         style={{ transform: `translateX(${start}px)`, width: WIDTH - 6, height: HEIGHT - 6 }}
         onClick={(event) => clickSide(event, side)}
         onKeyDown={(event) => keyOnSide(event, side)}
@@ -286,6 +301,7 @@ const Cell = memo(function Cell({
         <small>
           <b>{value}</b> {!plain && measureOf(sort).unit} · {springs}
         </small>
+        {chosen && <em className="gallery-parent">parent</em>}
       </button>
       {(pinned || hovered) && (
         <button

@@ -1,26 +1,22 @@
 // Live evolution: the net evolves before one's eyes; anchors are dragged and cells brushed meanwhile.
-import { Check, Eraser, Pause, Play, Sprout, Square, X } from "lucide-react";
+import { Check, Eraser, Pause, Play, Sprout, X } from "lucide-react";
 import type { ReactNode } from "react";
-import { useState } from "react";
+import { useMemo, useState } from "react";
 import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
 import { inDigits } from "../document/scale";
 import { ask, askQuietly, store } from "../document/store";
-import { GROW } from "../document/weights";
+import { GROW, springsIn } from "../document/weights";
 import type { Refused } from "../protocol/connection";
 import type { GenerationRow, LiveState } from "../protocol/messages";
+import { discardGrown, keepGrown } from "./confirming";
 import { ParameterFields } from "./ParameterFields";
 import { Fact, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { useStudio } from "./use";
 
-type Step = "start" | "pause" | "continue" | "keep" | "discard";
-
 /** Asks for a step of live evolution. */
-export function steerLive(what: Step): void {
-  ask(
-    { type: "live_evolve", what, parameters: {} },
-    what === "keep" ? "Keeping the net" : "Evolving",
-  );
+function steerLive(what: "start" | "pause" | "continue"): void {
+  ask({ type: "live_evolve", what, parameters: {} }, "Evolving");
 }
 
 export function LiveSection() {
@@ -95,7 +91,10 @@ function LiveParameters({ live }: { live: LiveState }) {
   const changed = live.changed.length;
   return (
     <details className="live-parameters" onToggle={(event) => setOpen(event.currentTarget.open)}>
-      <summary>Parameters{changed > 0 && <span className="aside">{changed} changed</span>}</summary>
+      <summary>
+        Parameters of live evolution
+        {changed > 0 && <span className="aside">{changed} changed</span>}
+      </summary>
       <p className="explain">Changes count from the next generation on.</p>
       {open && (
         <ParameterFields
@@ -124,37 +123,45 @@ function LiveParameters({ live }: { live: LiveState }) {
 
 function Course({ live }: { live: LiveState }) {
   const last = live.points.at(-1);
+  const own = useStudio((state) => state.document!.own);
+  const still = standstill(live);
   return (
     <>
-      <div className="row">
-        {live.status === "running" ? (
-          <button type="button" className="button icon" onClick={() => steerLive("pause")}>
-            <Pause /> Pause
-          </button>
-        ) : (
-          <button
-            type="button"
-            className="button icon"
-            disabled={live.status === "failed"}
-            onClick={() => steerLive("continue")}
-          >
-            <Play /> Continue
-          </button>
-        )}
-        <button type="button" className="button icon primary" onClick={() => steerLive("keep")}>
-          <Square /> Stop and keep
-        </button>
-      </div>
-      <RunGraph rows={rowsOf(live)} of="differential" />
+      <RunGraph rows={rowsOf(live)} of="differential" own={own.force_differential} />
       <p className="graph-words">
         <i className="swatch accent" /> force differential{" "}
         <b>{inDigits(last?.force_differential ?? null, 4)}</b>
+        <i className="swatch own" /> my design <b>{inDigits(own.force_differential, 4)}</b>
+      </p>
+      <p className="explain">
+        {still > PATIENCE
+          ? `No mutant was better in ${still < live.points.length ? still : `${still} or more`} generations; the parent stays. ${live.parameters.fitness === "differential" ? "Compared by spring utilization, nets may rise in differential while they become denser." : "Other parameters, or an anchor moved, set it going again."}`
+          : live.parameters.fitness === "suf"
+            ? "The differential rises while springs come, for they share the same pull; the best has the least rise for a spring."
+            : "The best has the least force differential, however many springs it has."}
       </p>
       <Fact name="Generations" value={live.generation} digits={6} />
       <Fact name="Generations a second" value={live.rate} digits={3} />
       <Fact name="Springs" value={last?.springs ?? null} digits={6} />
     </>
   );
+}
+
+/** Generations without a better mutant after which it is told. */
+const PATIENCE = 25;
+
+/** Generations since the parent changed. */
+function standstill({ points }: LiveState): number {
+  const last = points.at(-1);
+  if (!last) return 0;
+  let first = points.length;
+  while (
+    first > 0 &&
+    points[first - 1].springs === last.springs &&
+    points[first - 1].force_differential === last.force_differential
+  )
+    first--;
+  return points.length - 1 - first;
 }
 
 function Brushes() {
@@ -179,17 +186,43 @@ function Brushes() {
       {one(null, "Erase", <Eraser />, "")}
       {count > 0 && (
         <p className="explain">
-          {count.toLocaleString("en")} brushed; what descends from them inherits it, in runs too.{" "}
+          {count.toLocaleString("en")} brushed; what descends from them inherits it, in runs too.
+          Marks stay with the document until they are cleared.{" "}
           <button
             type="button"
             className="link"
             onClick={() => ask({ type: "weigh_cells", cells: [], factor: null })}
           >
-            Erase all
+            Clear marks
           </button>
         </p>
       )}
+      {count > 0 && <Growth />}
     </fieldset>
+  );
+}
+
+/** How much of the net stands where it is to grow, and where evolution is kept out. */
+function Growth() {
+  const net = useStudio((state) => state.net);
+  const weights = useStudio((state) => state.live?.weights);
+  const [grown, kept] = useMemo(() => {
+    if (!net || !weights) return [null, null];
+    return [springsIn(net, weights, true), springsIn(net, weights, false)];
+  }, [net, weights]);
+  const all = (net?.ends.length ?? 0) / 2;
+  const words = (count: number) =>
+    `${count.toLocaleString("en")} of ${all.toLocaleString("en")} (${((100 * count) / Math.max(all, 1)).toFixed(1)} %)`;
+  return (
+    <div className="growth">
+      {grown && (
+        <>
+          <Fact name="Springs where it grows" value={words(grown.springs)} />
+          <Fact name="Cells where it grows" value={grown.cells} digits={6} />
+        </>
+      )}
+      {kept && <Fact name="Springs kept out of" value={words(kept.springs)} />}
+    </div>
   );
 }
 
@@ -209,15 +242,20 @@ export function LiveBanner() {
           ? live.reason
           : `${live.reason || rateOf(live)} · ${(last?.springs ?? 0).toLocaleString("en")} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
       </span>
+      {live.status === "running" && (
+        <button type="button" className="button icon" onClick={() => steerLive("pause")}>
+          <Pause /> Pause
+        </button>
+      )}
       {live.status === "paused" && (
         <button type="button" className="button icon" onClick={() => steerLive("continue")}>
           <Play /> Continue
         </button>
       )}
-      <button type="button" className="button icon primary" onClick={() => steerLive("keep")}>
-        <Check /> Keep
+      <button type="button" className="button icon primary" onClick={keepGrown}>
+        <Check /> Stop and keep
       </button>
-      <button type="button" className="button" onClick={() => steerLive("discard")}>
+      <button type="button" className="button" onClick={discardGrown}>
         Discard
       </button>
     </div>

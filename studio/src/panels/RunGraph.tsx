@@ -7,7 +7,16 @@ import { useStudio } from "./use";
 
 type Column = (number | null)[];
 
-export function RunGraph({ rows, of }: { rows: Run["rows"]; of: "differential" | "springs" }) {
+export function RunGraph({
+  rows,
+  of,
+  own,
+}: {
+  rows: Run["rows"];
+  of: "differential" | "springs";
+  /** Value of the design that it started from, drawn as a line. */
+  own: number | null;
+}) {
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const theme = useStudio((state) => state.theme);
@@ -27,6 +36,7 @@ export function RunGraph({ rows, of }: { rows: Run["rows"]; of: "differential" |
       width,
       points: { show: false },
     });
+    const start = { stroke: colour("--soft"), width: 1, dash: [6, 4], points: { show: false } };
     const series: uPlot.Series[] =
       of === "differential"
         ? [
@@ -35,8 +45,9 @@ export function RunGraph({ rows, of }: { rows: Run["rows"]; of: "differential" |
             band(0),
             { ...band(1), dash: [3, 3] },
             { stroke: colour("--accent"), width: 2, points: { show: false } },
+            start,
           ]
-        : [{}, { stroke: colour("--good"), width: 2, points: { show: false } }];
+        : [{}, { stroke: colour("--good"), width: 2, points: { show: false } }, start];
     const made = new uPlot(
       {
         width: box.current!.clientWidth,
@@ -74,31 +85,37 @@ export function RunGraph({ rows, of }: { rows: Run["rows"]; of: "differential" |
       box.current!,
     );
     plot.current = made;
-    made.setData(dataOf(rows, of));
+    made.setData(dataOf(rows, of, own));
     return () => made.destroy();
   }, [theme, of]);
   useEffect(() => {
     marks.current = rows.filter(({ changed }) => changed).map(({ generation }) => generation);
-    plot.current?.setData(dataOf(rows, of));
-  }, [rows, of]);
+    plot.current?.setData(dataOf(rows, of, own));
+  }, [rows, of, own]);
   const last = rows.at(-1);
   const words =
     of === "differential"
-      ? `Force differential over ${rows.length} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}`
+      ? `Force differential over ${rows.length} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}, at the start ${own?.toFixed(2) ?? "undefined"}`
       : `Springs over ${rows.length} generations, now ${last?.springs ?? 0}`;
   return <div className="graph" ref={box} role="img" aria-label={words} />;
 }
 
-function dataOf(rows: Run["rows"], of: "differential" | "springs"): uPlot.AlignedData {
+function dataOf(
+  rows: Run["rows"],
+  of: "differential" | "springs",
+  own: number | null,
+): uPlot.AlignedData {
   const generations = rows.map(({ generation }) => generation);
   const column = (name: "low" | "median" | "high" | "force_differential" | "springs"): Column =>
     rows.map((row) => row[name]);
-  if (of === "springs") return [generations, column("springs")];
+  const start: Column = rows.map(() => own);
+  if (of === "springs") return [generations, column("springs"), start];
   return [
     generations,
     column("low"),
     column("high"),
     column("median"),
     column("force_differential"),
+    start,
   ];
 }

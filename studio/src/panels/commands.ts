@@ -5,6 +5,7 @@ import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
 import type { Viewport } from "../viewport/scene";
 import { CHOOSING_COMMANDS } from "./choosingCommands";
+import { discardGrown, keepGrown, restoreGrown } from "./confirming";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
@@ -48,6 +49,9 @@ const needsOneNode = ({ selection }: State) =>
   selection.kind === "nodes" && selection.keys.length === 1 ? null : "select one node first";
 const needsSpring = ({ selection }: State) =>
   selection.kind === "springs" && selection.keys.length === 1 ? null : "select one spring first";
+
+const needsLive = ({ live }: State) =>
+  live && live.status !== "none" ? null : "nothing evolves live";
 
 function cells(): string[] {
   const { selection } = store.getState();
@@ -287,6 +291,35 @@ export const COMMANDS: Command[] = [
       } as const;
       ask({ type: "live_evolve", what: what[status], parameters: {} }, "Evolving");
     },
+  },
+  {
+    id: "live-keep",
+    label: "Stop live evolution and keep the net",
+    group: "Net",
+    refused: needsLive,
+    run: keepGrown,
+  },
+  {
+    id: "live-discard",
+    label: "Discard what evolved live",
+    group: "Net",
+    refused: needsLive,
+    run: discardGrown,
+  },
+  {
+    id: "live-restore",
+    label: "Bring back what was discarded",
+    group: "Net",
+    refused: ({ live }) => (live?.restorable ? null : "nothing was discarded"),
+    run: restoreGrown,
+  },
+  {
+    id: "clear-marks",
+    label: "Clear all marks where evolution grows or keeps out",
+    group: "Net",
+    refused: ({ live }) =>
+      Object.keys(live?.weights ?? {}).length ? null : "no cells are brushed",
+    run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
   },
   {
     id: "fit",

@@ -1,0 +1,290 @@
+// The run of the document: its course, what it is started with, and the runs before it.
+import { Pause, Play, Square } from "lucide-react";
+import { useRef, useState } from "react";
+import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
+import type { Run } from "../document/run";
+import { inDigits } from "../document/scale";
+import { ask, askQuietly, notify } from "../document/store";
+import type { Asking, Refused } from "../protocol/connection";
+import { ParameterFields } from "./ParameterFields";
+import { Fact, Section } from "./parts";
+import { RunGraph } from "./RunGraph";
+import { useStudio } from "./use";
+
+/** What a person may set; the rest has the engine's defaults. */
+const SET = [
+  "population",
+  "insertions",
+  "switches",
+  "toggles",
+  "types",
+  "weighting",
+  "fitness",
+  "selection",
+  "symmetry",
+  "until_springs",
+  "until_differential",
+  "generations",
+  "seed",
+] as const satisfies ParameterName[];
+
+const DEFAULTS: Texts = {
+  population: "100",
+  insertions: "3",
+  switches: "3",
+  toggles: "1",
+  weighting: "exponential",
+  fitness: "suf",
+  selection: "comma",
+  symmetry: "false",
+  until_springs: "2000",
+  until_differential: "0",
+  generations: "300",
+  seed: "1",
+};
+
+type Names = readonly ParameterName[];
+
+const TYPES: Record<string, string> = { recursive: "1", extensible: "1,2,3,4,5", dynamic: "1,6" };
+
+/** Those of them that a run keeps from its start. */
+const FIXED: ParameterName[] = ["population", "seed"];
+
+export function RunSection() {
+  const run = useStudio((state) => state.run);
+  const top = useRef<HTMLDivElement>(null);
+  const { status, reason } = run?.state ?? { status: "none", reason: "" };
+  const made = run && status !== "none" ? run : null;
+  return (
+    <div ref={top}>
+      <Section
+        title="Run"
+        aside={
+          made && (
+            <span className={status === "failed" ? "aside bad" : "aside"}>
+              {words(status, reason)}
+            </span>
+          )
+        }
+      >
+        {made ? (
+          <Course run={made} />
+        ) : (
+          <p className="explain">
+            Mutants of the net subdivide cells and change their types; the best of each generation
+            is the parent of the next. Your design stays as it is until you take a net over.
+          </p>
+        )}
+        <Starting
+          key={made?.state.folder ?? ""}
+          run={made}
+          onStart={() => top.current?.scrollIntoView({ block: "start" })}
+        />
+        {made && made.state.runs.length > 1 && <Runs run={made} />}
+      </Section>
+    </div>
+  );
+}
+
+/** All runs of the document; each can be shown again. */
+function Runs({ run }: { run: Run }) {
+  const { runs, name, status } = run.state;
+  return (
+    <>
+      <h3 className="runs-title">Runs of this document</h3>
+      <ul className="runs" aria-label="Runs of this document">
+        {runs.map((one) => (
+          <li key={one.number}>
+            <button
+              type="button"
+              aria-pressed={one.name === name}
+              title={
+                one.name === name
+                  ? "It is shown"
+                  : `Show it again${status === "running" ? "; the run that goes on ends, and can be continued later" : ""}`
+              }
+              onClick={() => ask({ type: "open_run", number: one.number }, "Opening the run")}
+            >
+              <b>{one.number ? `Run ${one.number}` : "Run elsewhere"}</b>
+              <span>
+                {one.generations} generations, {one.springs.toLocaleString("en")} springs,
+                differential {inDigits(one.force_differential, 4)}
+              </span>
+              {one.name === name && <em>shown</em>}
+            </button>
+          </li>
+        ))}
+      </ul>
+    </>
+  );
+}
+
+/** Why the differential goes where it goes. */
+function reading(start: number, now: number, parameters: Record<string, unknown>): string {
+  if (parameters.fitness === "differential" && now <= start)
+    return "The best has the least force differential: the net need not become denser.";
+  if (now <= start) return "No springs have come yet.";
+  const rise =
+    "More springs share the same pull, so the smallest force falls and the differential rises while the net becomes denser";
+  return parameters.fitness === "differential"
+    ? `${rise}; of each generation the mutant with the least is chosen.`
+    : `${rise}; the mutant with the least rise for a spring is chosen.`;
+}
+
+function Course({ run }: { run: Run }) {
+  const { status, reason, following, generations } = run.state;
+  const { start_springs, start_differential } = run.state;
+  const last = run.rows.at(-1);
+  const steer = (what: "pause" | "continue" | "stop") =>
+    ask({ type: "steer_run", what, parameters: {} });
+  const alive = status === "running" || status === "paused";
+  return (
+    <>
+      <div className="row">
+        {status === "running" ? (
+          <button type="button" className="button icon" onClick={() => steer("pause")}>
+            <Pause /> Pause
+          </button>
+        ) : (
+          <button
+            type="button"
+            className="button icon primary"
+            onClick={() => steer("continue")}
+            disabled={status === "ended" && reason !== "it was stopped"}
+          >
+            <Play /> Continue
+          </button>
+        )}
+        <button
+          type="button"
+          className="button icon"
+          onClick={() => steer("stop")}
+          disabled={!alive}
+        >
+          <Square /> Stop
+        </button>
+        <label className="check">
+          <input
+            type="checkbox"
+            checked={following}
+            onChange={(event) => ask({ type: "follow", on: event.target.checked })}
+          />
+          Follow in the view
+        </label>
+      </div>
+      {run.state.driver && (
+        <p className="explain">
+          Driven by {run.state.driver}, which does what you ask between two generations.
+        </p>
+      )}
+      {last && (
+        <>
+          <RunGraph rows={run.rows} of="differential" own={start_differential} />
+          <p className="graph-words">
+            <i className="swatch accent" /> parent’s differential{" "}
+            <b>{inDigits(last.force_differential, 4)}</b>
+            <i className="swatch band" /> population
+            <i className="swatch own" /> start <b>{inDigits(start_differential, 4)}</b>
+          </p>
+          <RunGraph rows={run.rows} of="springs" own={start_springs} />
+          <p className="graph-words">
+            <i className="swatch good" /> springs <b>{last.springs.toLocaleString("en")}</b>
+          </p>
+          <p className="explain">{reading(start_springs, last.springs, run.state.parameters)}</p>
+          <Fact name="Generations" value={generations} digits={6} />
+          <Fact
+            name="Spring utilization factor"
+            value={last.suf}
+            title="How much the force differential rose for every spring that came since the start; 0 or less: it did not rise"
+          />
+        </>
+      )}
+    </>
+  );
+}
+
+function words(status: string, reason: string): string {
+  if (status === "running") return "running";
+  if (status === "paused") return "paused";
+  return status === "failed" ? reason : `ended: ${reason}`;
+}
+
+/** What a run is started with and changed to, and the buttons that do so, always in reach. */
+function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
+  const method = useStudio((state) => state.document!.method);
+  const folder = run?.state.folder ?? "";
+  const [open, setOpen] = useState(!folder);
+  const [texts, setTexts] = useState<Texts>(() => textsOf(run?.state.parameters ?? {}, method));
+  const [problems, setProblems] = useState<Texts>({});
+  const alive = run?.state.status === "running" || run?.state.status === "paused";
+  const send = async (request: (values: Record<string, unknown>) => Asking, names: Names) => {
+    const values = names.map((name) => [name, valueSaid(name, texts[name] ?? "")]);
+    setProblems({});
+    try {
+      await askQuietly(request(Object.fromEntries(values)));
+      return true;
+    } catch (error) {
+      const { key, words } = error as Refused;
+      if (names.includes(key as ParameterName)) setProblems({ [key as string]: words });
+      else notify((error as Error).message);
+      setOpen(true);
+      return false;
+    }
+  };
+  const start = async () => {
+    const begun = await send((parameters) => ({ type: "evolve", looked: false, parameters }), SET);
+    if (!begun) return;
+    setOpen(false);
+    onStart();
+  };
+  const change = () =>
+    send(
+      (parameters) => ({ type: "steer_run", what: "change", parameters }),
+      SET.filter((name) => !FIXED.includes(name)),
+    );
+  return (
+    <>
+      <details
+        className="live-parameters"
+        open={open}
+        onToggle={(event) => setOpen(event.currentTarget.open)}
+      >
+        <summary>Parameters of runs</summary>
+        {open && (
+          <ParameterFields
+            names={SET}
+            texts={texts}
+            problems={problems}
+            onTake={(name, text) => {
+              setTexts((before) => ({ ...before, [name]: text }));
+              setProblems((before) => ({ ...before, [name]: "" }));
+            }}
+          />
+        )}
+      </details>
+      <div className="row start-run">
+        <button type="button" className={alive ? "button" : "button primary"} onClick={start}>
+          {folder ? "Start a new run" : "Evolve"}
+        </button>
+        {alive && open && (
+          <button type="button" className="button" onClick={change}>
+            Change from now on
+          </button>
+        )}
+      </div>
+    </>
+  );
+}
+
+function textsOf(kept: Record<string, unknown>, method: string): Texts {
+  const texts: Texts = { ...DEFAULTS, types: TYPES[method] ?? "1" };
+  for (const name of SET) if (name in kept) texts[name] = textOf(name, kept[name]);
+  return texts;
+}
+
+/** Parameters of a run for another one that goes on from one of its individuals. */
+export function changeableOf(parameters: Record<string, unknown>): Record<string, unknown> {
+  return Object.fromEntries(
+    SET.flatMap((name) => (parameters[name] == null ? [] : [[name, parameters[name]]])),
+  );
+}

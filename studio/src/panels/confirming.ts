@@ -1,0 +1,51 @@
+// What is told once it is done, with the way back: nets that are taken over, kept or discarded.
+import { toast } from "sonner";
+import { ask, notify, store } from "../document/store";
+
+/** Makes what is looked at the design. */
+export async function takeOver(): Promise<void> {
+  const label = store.getState().document?.looking?.label ?? "";
+  const reply = await ask({ type: "reinstate" }, "Taking it over");
+  if (reply) confirmAction(`Your design is now: ${label}`);
+}
+
+/** Makes the net that evolves live the design. */
+export async function keepGrown(): Promise<void> {
+  const generation = store.getState().live?.generation ?? 0;
+  const reply = await ask({ type: "live_evolve", what: "keep", parameters: {} }, "Keeping the net");
+  if (reply) confirmAction(`Your design is now what grew in ${generation} generations`);
+}
+
+/** Goes back to the design; what evolved live can be brought back. */
+export async function discardGrown(): Promise<void> {
+  const reply = await ask({ type: "live_evolve", what: "discard", parameters: {} }, "Discarding");
+  if (!reply) return;
+  toast.message("What grew is discarded; your design is as it was", {
+    id: "done",
+    duration: 12_000,
+    action: { label: "Undo", onClick: restoreGrown },
+  });
+}
+
+/** Brings back what was discarded last. */
+export function restoreGrown(): void {
+  ask({ type: "live_evolve", what: "restore", parameters: {} }, "Bringing it back");
+}
+
+/** Tells that the design was replaced, with an Undo of just that. */
+function confirmAction(text: string): void {
+  const { document } = store.getState();
+  const done = document?.position ?? 0;
+  toast.success(text, {
+    id: "done",
+    duration: 12_000,
+    action: {
+      label: "Undo",
+      onClick: () => {
+        if (store.getState().document?.position === done)
+          ask({ type: "undo", redo: false }, "Undoing");
+        else notify("something else was done since; go back in the history");
+      },
+    },
+  });
+}
