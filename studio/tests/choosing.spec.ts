@@ -62,8 +62,8 @@ test("a tutor brushes, clusters in 12, takes representative 5 over and pins it",
 }) => {
   const folder = evolved(
     join(home, "run"),
-    ...["three-cylinders", "--population", "100", "--insertions", "6", "--until-springs", "2200"],
-    ...["--seed", "1"],
+    ...["three-cylinders", "--population", "100", "--insertions", "2", "--types", "1,6"],
+    ...["--until-springs", "2150", "--seed", "1"],
   );
   await open(folder);
   await page.getByRole("tab", { name: "Evolve" }).click();
@@ -133,6 +133,7 @@ test("pins outlive the page and the studio, and all windows show the same", asyn
   await cells.nth(5).click({ button: "right" });
   await page.getByRole("menuitem", { name: /^Pin/ }).click();
   await expect(strip(other).getByRole("listitem")).toHaveCount(3);
+  await expect(strip(page).getByRole("listitem")).toHaveCount(3);
   const words = await strip(page).textContent();
   expect(words).toMatch(/Springs[\d,]+Differential[\d.]+SUF[\d.−e]+Area[\d.]+ m²/);
   await expect(strip(other)).toHaveText(words!);

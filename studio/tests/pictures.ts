@@ -95,6 +95,38 @@ test("evolution", async ({ page, open }) => {
   await take(page, "lineage");
 });
 
+test("choosing", async ({ page, open }) => {
+  await open("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Evolve", exact: true }).click();
+  await page.getByText("ended").waitFor({ timeout: 120_000 });
+  await page.keyboard.press("u");
+  await page.waitForTimeout(2500);
+  for (const cell of [0, 4, 12]) {
+    await page.locator(".gallery-cell").nth(cell).focus();
+    await page.keyboard.press("p");
+    await page.waitForTimeout(600);
+  }
+  await page.locator(".gallery-cell").nth(2).click();
+  await page.getByRole("list", { name: "Pinned nets" }).scrollIntoViewIfNeeded();
+  await page.waitForTimeout(1500);
+  await take(page, "pinned");
+  await page.locator(".gallery").getByRole("button", { name: "A row a generation" }).click();
+  await page.locator(".gallery").getByLabel("Sorted by").selectOption("total_length");
+  await page.getByLabel("Generation, at least").scrollIntoViewIfNeeded();
+  await page.waitForTimeout(1500);
+  await take(page, "ranking");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Shift+P");
+  await page.getByRole("table", { name: "Figures" }).waitFor();
+  await take(page, "compare");
+  await page.locator("main.viewport canvas").focus();
+  for (const key of ["u", "d"]) await page.keyboard.press(key);
+  await page.getByRole("combobox", { name: "Net A" }).selectOption({ index: 3 });
+  await page.waitForTimeout(1500);
+  await take(page, "compare-light");
+});
+
 test("framework", async ({ page, open }) => {
   await open("three-cylinders");
   await page.getByRole("tab", { name: "Framework" }).click();

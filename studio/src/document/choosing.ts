@@ -124,7 +124,8 @@ export function ranked(
   // 53 bits hold a value and a row; beyond two million rows the last bits of values are left out.
   const coarse = 2 ** Math.max(0, bits - EXACT_BITS);
   const values = new Float32Array(count);
-  for (let row = 0; row < count; row++) values[row] = placeOnAxis(individuals, by, row);
+  // The zero that is added leaves one kind of zero.
+  for (let row = 0; row < count; row++) values[row] = placeOnAxis(individuals, by, row) + 0;
   const patterns = new Uint32Array(values.buffer);
   const packed = new Float64Array(count);
   let chosen = 0;

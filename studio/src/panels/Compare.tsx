@@ -172,13 +172,14 @@ export function CompareTable() {
           <X />
         </IconButton>
       </header>
-      <div className="panel">
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by keys */}
+      <section className="panel" tabIndex={0} aria-label="Figures, reactions and cells">
         {table ? (
           <Figures table={table} />
         ) : (
           <p className="explain">Both nets are being rebuilt and solved.</p>
         )}
-      </div>
+      </section>
     </aside>
   );
 }
