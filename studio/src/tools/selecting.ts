@@ -75,10 +75,12 @@ function cellsWithin(net: Net, viewport: Viewport, outline: Outline, through: bo
 
 function within(outline: Outline, [x, y]: [number, number]): boolean {
   let inside = false;
-  outline.forEach(([ax, ay], at) => {
-    const [bx, by] = outline[(at + 1) % outline.length];
-    if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) inside = !inside;
-  });
+  for (let at = 0, last = outline.length - 1; at < outline.length; last = at++) {
+    const a = outline[at];
+    const b = outline[last];
+    if (a[1] > y !== b[1] > y && x < ((b[0] - a[0]) * (y - a[1])) / (b[1] - a[1]) + a[0])
+      inside = !inside;
+  }
   return inside;
 }
 
