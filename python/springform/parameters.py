@@ -107,8 +107,8 @@ class Parameters(BaseModel):
     cell_weights: dict[str, Annotated[float, Field(ge=0, le=1e6)]] = {}
     """Factors, by address, on the chance that a cell or one that descends from it is drawn.
 
-    The nearest one counts; 0: never drawn, nor changed by a step on the cells above it. What grew in
-    a cell of a factor above 1 is turned off that much more rarely.
+    The nearest one counts; 0: never drawn, nor changed by a step on the cells above it. What grew
+    in a cell of a factor above 1 is turned off that much more rarely.
     """
     until_springs: Annotated[int, Field(ge=1, lt=2**32)] | None = None
     """End once the parent has this many springs."""
