@@ -48,6 +48,7 @@ test("a researcher watches a run of the command line and changes its course", as
     await page.getByRole("button", { name: "Pause", exact: true }).first().click();
     await expect(page.getByRole("button", { name: "Continue" })).toBeVisible();
     const paused = await generations(page);
+    await page.getByText("Parameters of runs").click();
     await page.getByLabel("Cells subdivided").fill("5%");
     await page.getByRole("button", { name: "Change from now on" }).click();
     await expect

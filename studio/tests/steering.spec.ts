@@ -22,8 +22,9 @@ test("live evolution obeys its parameters, and a discarded net comes back", asyn
   const before = await documentOf(page);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await page.getByText("Parameters of live evolution").click();
-  await page.getByLabel("Best is the least").first().selectOption("differential");
-  await page.getByLabel("The parent").first().selectOption("plus");
+  const parameters = page.locator(".live-parameters").first();
+  await parameters.getByLabel("Best is the least").selectOption("differential");
+  await parameters.getByLabel("The parent").selectOption("plus");
   await page.getByRole("button", { name: "Evolve live" }).click();
   await expect(page.locator(".section").first()).toContainText("No mutant was better in");
   const told = (await page.locator(".looking.live span").first().textContent())!;
@@ -32,7 +33,7 @@ test("live evolution obeys its parameters, and a discarded net comes back", asyn
 
   await page.getByRole("button", { name: "Discard" }).click();
   await expect(page.locator(".looking.live")).toHaveCount(0);
-  await page.getByRole("button", { name: "Undo" }).last().click();
+  await page.getByRole("button", { name: "Undo this" }).click();
   await expect(page.locator(".looking.live")).toContainText("Evolving live");
   await page.getByRole("button", { name: "Stop and keep" }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);

@@ -249,11 +249,9 @@ class Session:
     async def _change(self, request: Request) -> list[str]:
         cells: list[str] = []
         match request:
-            case Evolve() | SteerRun():
+            case Evolve() | SteerRun() | OpenRun():
                 await self._steer(request)
                 return []
-            case OpenRun():
-                await self._open_run(request.number)
             case LiveEvolve():
                 await self._steer_live(request)
             case WeighCells():
@@ -435,7 +433,10 @@ class Session:
 
     # --- the run -------------------------------------------------------------------------------
 
-    async def _steer(self, request: Evolve | SteerRun) -> None:
+    async def _steer(self, request: Evolve | SteerRun | OpenRun) -> None:
+        if isinstance(request, OpenRun):
+            await self._open_run(request.number)
+            return
         if isinstance(request, SteerRun):
             await self.runs.steer(request, self._in_thread)
             self._tell_runs()
@@ -453,6 +454,7 @@ class Session:
         if self._looking is not None:
             self._looking = None
             self._take_design()
+            self._tell_document()
         self._tell_other_run()
 
     def _tell_other_run(self) -> None:

@@ -23,7 +23,7 @@ export async function discardGrown(): Promise<void> {
   toast.message("What grew is discarded; your design is as it was", {
     id: "done",
     duration: 12_000,
-    action: { label: "Undo", onClick: restoreGrown },
+    action: { label: "Undo this", onClick: restoreGrown },
   });
 }
 
@@ -40,7 +40,7 @@ function confirmAction(text: string): void {
     id: "done",
     duration: 12_000,
     action: {
-      label: "Undo",
+      label: "Undo this",
       onClick: () => {
         if (store.getState().document?.position === done)
           ask({ type: "undo", redo: false }, "Undoing");
