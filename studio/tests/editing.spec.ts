@@ -236,3 +236,64 @@ test("types are given with a brush", async ({ page, visit }) => {
   expect(history.at(-1)?.label).toMatch(/^Give .* type 2$/);
   expect(figures.springs).not.toBe(before.figures.springs);
 });
+
+test("what the form shows of springs is what counts", async ({ page, visit }) => {
+  await visit("sheet");
+  const sense = page.getByLabel("Sense");
+  const constant = page.getByLabel("Stiffness k", { exact: true });
+  const before = await sense.inputValue();
+  await constant.fill("3");
+  await page.getByRole("button", { name: "Apply to all springs" }).click();
+  await expect(page.locator(".groups li")).toHaveCount(2);
+  await expect(sense).toHaveValue(before);
+  await constant.fill("-5");
+  await page.getByRole("button", { name: "Apply to all springs" }).click();
+  await expect(page.getByText("Stiffness: must be greater than 0, not -5")).toBeVisible();
+  await expect(page.locator(".groups li")).toHaveCount(2);
+});
+
+test("what was done is not foreseen any more", async ({ page, visit }) => {
+  await visit("sheet");
+  const cells = (await documentOf(page)).figures.springs;
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Control+a");
+  await page.getByRole("tab", { name: "Cells" }).click();
+  const subdivide = page.getByRole("button", { name: "Subdivide" }).last();
+  await subdivide.hover();
+  await expect(page.locator(".preview-card")).toContainText("Subdivide");
+  await subdivide.click();
+  await expect(async () => {
+    expect((await documentOf(page)).figures.springs).toBeGreaterThan(cells);
+  }).toPass();
+  await converged(page);
+  await expect(page.locator(".preview-card")).toHaveCount(0);
+});
+
+test("a stroke that begins beside the net is a stroke", async ({ page, visit }) => {
+  await visit("sheet");
+  await still(page);
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("b");
+  const { anchors, figures } = await documentOf(page);
+  const places = await Promise.all(anchors.map(({ name }) => anchorPlace(page, name)));
+  const middle = {
+    x: places.reduce((sum, { x }) => sum + x, 0) / places.length,
+    y: places.reduce((sum, { y }) => sum + y, 0) / places.length,
+  };
+  // From an anchor on, 15 px away from the net.
+  const [at] = places;
+  const away = Math.hypot(at.x - middle.x, at.y - middle.y);
+  const along = (distance: number) => ({
+    x: at.x + (distance * (at.x - middle.x)) / away,
+    y: at.y + (distance * (at.y - middle.y)) / away,
+  });
+  const [outside, inside] = [along(15), along(-0.6 * away)];
+  await page.mouse.move(outside.x, outside.y);
+  await page.mouse.down();
+  await page.mouse.move(inside.x, inside.y, { steps: 20 });
+  expect(await anchorPlace(page, anchors[0].name)).toEqual(at);
+  await page.mouse.up();
+  await expect(async () => {
+    expect((await documentOf(page)).figures.springs).toBeGreaterThan(figures.springs);
+  }).toPass();
+});

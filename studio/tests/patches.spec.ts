@@ -80,12 +80,12 @@ test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
   const mirrored = await placed(true);
   expect(plain).not.toBe(mirrored);
 
-  await card(page, "askew").getByRole("button", { name: "askew", exact: true }).click();
+  await card(page, "askew").getByRole("button", { name: "Rename askew" }).click();
   await page.getByLabel("New name").fill("Not a name");
   await page.getByLabel("New name").press("Enter");
   await toast(page, /name/);
   await expect(card(page, "askew")).toBeVisible();
-  await card(page, "askew").getByRole("button", { name: "askew", exact: true }).click();
+  await card(page, "askew").getByRole("button", { name: "Rename askew" }).click();
   await page.getByLabel("New name").fill("upright");
   await page.getByLabel("New name").press("Enter");
   await expect(card(page, "upright")).toContainText("7 cells in 1");

@@ -28,6 +28,11 @@ export function foresee(label: string, action: Foreseen, wait = WAIT): void {
   }, wait);
 }
 
+// Once something is done, what it would have done is the past.
+store.subscribe(({ document: now }, { document: before }) => {
+  if (now?.document !== before?.document || now?.position !== before?.position) forget();
+});
+
 /** Shows no preview any more. */
 export function forget(): void {
   number++;

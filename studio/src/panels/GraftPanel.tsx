@@ -1,5 +1,5 @@
 // Grafting: patches that are copied from the net, kept, and set elsewhere after a look at what changes.
-import { ChevronsRight, FlipHorizontal2, RotateCw, Trash2 } from "lucide-react";
+import { ChevronsRight, FlipHorizontal2, Pencil, RotateCw, Trash2 } from "lucide-react";
 import { useMemo, useState } from "react";
 import { useStore } from "zustand";
 import { type Grafting, grafting, type Place, putAway } from "../document/grafting";
@@ -17,7 +17,7 @@ import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
 import { inDigits } from "../document/scale";
 import { toggleLock } from "./graftCommands";
-import { Choice, Hint, IconButton, Section } from "./parts";
+import { Choice, IconButton, Section } from "./parts";
 import { useStudio } from "./use";
 
 export function useGrafting<T>(what: (state: Grafting) => T): T {
@@ -166,11 +166,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
             }}
           />
         ) : (
-          <Hint text="Rename">
-            <button type="button" className="patch-name" onClick={() => setNaming(true)}>
-              {patch.name}
-            </button>
-          </Hint>
+          <b className="patch-name">{patch.name}</b>
         )}
         {patch.problem ? (
           <span className="warning" title={patch.problem}>
@@ -186,6 +182,17 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
           </>
         )}
       </div>
+      <span className="button patch-do" aria-hidden="true">
+        {chosen ? "Put away" : "Graft"}
+      </span>
+      <IconButton
+        label={`Rename ${patch.name}`}
+        side="left"
+        className="icon-button small"
+        onClick={() => setNaming(true)}
+      >
+        <Pencil />
+      </IconButton>
       <IconButton
         label={`Delete ${patch.name}`}
         side="left"

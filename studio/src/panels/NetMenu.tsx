@@ -1,5 +1,6 @@
 // The menu of the right mouse button on the net: what can be done with what is under it.
 import { ContextMenu } from "radix-ui";
+import type { Net } from "../document/net";
 import { commandOf, retype } from "./commands";
 import { useDialogs } from "./dialogs";
 import { Keys } from "./parts";
@@ -14,12 +15,15 @@ const ITEMS: Record<string, string[]> = {
 export function NetMenu() {
   const selection = useStudio((state) => state.selection);
   const types = useStudio((state) => state.document?.cell_types);
+  const anchor = useStudio(({ net, selection: { kind, keys } }) =>
+    net && kind === "nodes" ? anchorAt(net, keys[0]) : null,
+  );
   const title =
     selection.keys.length === 0
       ? "Nothing selected"
       : selection.keys.length > 1
         ? `${selection.keys.length} ${selection.kind}`
-        : `${selection.kind === "cells" ? "Cell" : selection.kind === "springs" ? "Spring" : "Node"} ${selection.keys[0]}`;
+        : `${selection.kind === "cells" ? "Cell" : selection.kind === "springs" ? "Spring" : anchor ? "Anchor" : "Node"} ${anchor ?? selection.keys[0]}`;
   return (
     <ContextMenu.Portal>
       <ContextMenu.Content className="menu" collisionPadding={8}>
@@ -47,6 +51,11 @@ export function NetMenu() {
       </ContextMenu.Content>
     </ContextMenu.Portal>
   );
+}
+
+function anchorAt(net: Net, node: string | undefined): string | null {
+  const place = [...net.anchors].findIndex((row) => net.nodes[row] === node);
+  return place < 0 ? null : net.anchorNames[place];
 }
 
 function Item({ id }: { id: string }) {

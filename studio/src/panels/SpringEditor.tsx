@@ -128,11 +128,19 @@ function LawForm({ scope }: { scope: Scope }) {
       notify(`${wrong[0]}: “${wrong[1].trim()}” is no number; write one such as 0.8`);
       return;
     }
+    const positive = chosen && chosen.key !== "curve" && chosen.key !== "force";
+    if (positive && constant.trim() !== "" && numberOf(constant) <= 0) {
+      notify(`${chosen.constant.name}: must be greater than 0, not ${constant.trim()}`);
+      return;
+    }
     const says: Record<string, unknown> = {};
     if (law && (newLaw || constant !== held))
       says[law] = law === "curve" ? pointsOf(constant) : numberOf(constant);
     if (restKey && chosen?.elastic !== false) says[restKey] = numberOf(restValue);
-    if (sense && sense !== (knownSense === null ? "" : SENSES[knownSense].key)) says.sense = sense;
+    const heldSense = knownSense === null ? "" : SENSES[knownSense].key;
+    // A group that says a law has a sense of its own; what the form shows is what counts.
+    const said = says[law] !== undefined && chosen === known;
+    if (sense && (said || sense !== heldSense)) says.sense = sense;
     if (diameter.trim()) says.diameter = numberOf(diameter) / 1000;
     ask({ type: "set_springs", choice: fullChoice(scope.choice), says }, "Changing the springs");
   };

@@ -3,6 +3,7 @@ import { grafting } from "../document/grafting";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
+import { isBesideCell } from "./nearness";
 import type { Pointer, Tool } from "./tool";
 
 export class Brushing implements Tool {
@@ -11,10 +12,9 @@ export class Brushing implements Tool {
 
   constructor(private readonly what: "subdivide" | "retype") {}
 
-  down(viewport: Viewport, hit: Hit | null): boolean {
-    if (hit?.kind !== "cell") return false;
-    this.add(viewport, hit);
-    return true;
+  down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
+    if (hit?.kind === "cell") this.add(viewport, hit);
+    return hit?.kind === "cell" || isBesideCell(viewport, pointer);
   }
 
   drag(viewport: Viewport, hit: Hit | null): void {

@@ -2,7 +2,8 @@
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
-import type { Tool } from "./tool";
+import { isBesideCell } from "./nearness";
+import type { Pointer, Tool } from "./tool";
 
 export class Weighing implements Tool {
   readonly reach = { cells: true };
@@ -10,11 +11,10 @@ export class Weighing implements Tool {
   /** Cells of this stroke, so that each is asked for once. */
   private readonly stroke = new Set<string>();
 
-  down(_: Viewport, hit: Hit | null): boolean {
-    if (hit?.kind !== "cell") return false;
+  down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
     this.stroke.clear();
-    this.add(hit);
-    return true;
+    if (hit?.kind === "cell") this.add(hit);
+    return hit?.kind === "cell" || isBesideCell(viewport, pointer);
   }
 
   drag(_: Viewport, hit: Hit | null): void {
