@@ -10,7 +10,7 @@ import { motionOf } from "../src/document/motion";
 import { applyNet } from "../src/document/net";
 import { decodeFrame } from "../src/protocol/frames";
 import type { Compared } from "../src/protocol/messages";
-import { accessible, converged, documentOf, expect, startStudio, test } from "./studio";
+import { accessible, converged, documentOf, expect, revisit, startStudio, test } from "./studio";
 
 const BIN = join(import.meta.dirname, "../../.venv/bin");
 
@@ -146,7 +146,7 @@ test("pins outlive the page and the studio, and all windows show the same", asyn
   const { port, hash } = new URL(page.url());
   await studio.kill();
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await expect(strip(page)).toHaveText(words!);
   await strip(page)
@@ -279,6 +279,7 @@ test("two nets are compared side by side under one eye", async ({ page, open, ho
       .getByRole("row", { name: new RegExp(`^${name}`) })
       .getByRole("cell")
       .allTextContents();
+  await expect(table.getByRole("row", { name: /^Springs/ }).getByRole("cell")).toHaveCount(3);
   const number = (text: string) => Number(text.replace(/,/g, "").replace("−", "-"));
   const [a, b, change] = (await row("Springs")).map(number);
   expect([a, b]).toEqual([first.figures.springs, second.figures.springs]);

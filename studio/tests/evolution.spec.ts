@@ -1,6 +1,6 @@
 // Evolution in the browser: a run is started, paused, changed, looked at, and taken over.
 import type { Page } from "@playwright/test";
-import { converged, documentOf, expect, startStudio, test } from "./studio";
+import { converged, documentOf, expect, revisit, startStudio, test } from "./studio";
 
 async function fill(page: Page, label: string, value: string): Promise<void> {
   const field = page.getByLabel(label, { exact: true });
@@ -85,7 +85,7 @@ test("a run outlives the studio", async ({ page, open, home }) => {
   const { port, hash } = new URL(page.url());
   await studio.kill();
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await expect.poll(() => generations(page)).toBe(made);
   await page.getByRole("button", { name: "Continue" }).click();

@@ -6,6 +6,7 @@ import {
   converged,
   documentOf,
   expect,
+  revisit,
   startStudio,
   test,
 } from "./studio";
@@ -132,7 +133,7 @@ test("a killed studio takes the evolution up where it stood", async ({ page, ope
   const { port, hash } = new URL(page.url());
   await studio.kill();
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   const banner = page.locator(".looking.live");
   await expect(banner).toContainText("taken up as it stood when the studio ended");
   // It is on the disk every second; what is missing grows again.

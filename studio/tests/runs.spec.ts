@@ -3,7 +3,7 @@ import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
-import { converged, documentOf, expect, startStudio, test } from "./studio";
+import { converged, documentOf, expect, revisit, startStudio, test } from "./studio";
 
 const BIN = join(import.meta.dirname, "../../.venv/bin");
 
@@ -91,7 +91,7 @@ test("a kill in mid-generation changes no bit of the run", async ({ page, open, 
   expect(readdirSync(folder)).toContain("lock");
 
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await page.getByRole("button", { name: "Continue" }).click();
   await expect(page.locator(".panel-evolve")).toContainText("ended");

@@ -1,6 +1,6 @@
 // What a designer relies on when nets evolve: parameters are obeyed, ends are ends, and no run is lost.
 import type { Page } from "@playwright/test";
-import { converged, documentOf, expect, startStudio, test } from "./studio";
+import { converged, documentOf, expect, revisit, startStudio, test } from "./studio";
 
 async function run(page: Page, generations: number): Promise<void> {
   const parameters = page.getByText("Parameters of runs");
@@ -58,7 +58,7 @@ test("an ended run stays ended over a restart, and earlier runs can be shown aga
   const { port, hash } = new URL(page.url());
   await studio.kill();
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   await converged(page);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await expect(page.getByText("ended: the number of generations is reached")).toBeVisible();

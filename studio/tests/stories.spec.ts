@@ -7,6 +7,7 @@ import {
   converged,
   documentOf,
   expect,
+  revisit,
   startStudio,
   test,
 } from "./studio";
@@ -209,7 +210,7 @@ test("a killed studio has lost nothing that was done", async ({ page, open, home
   await studio.kill();
   await expect(page.locator(".line-state")).toContainText("does not answer");
   const again = await startStudio(home, undefined, Number(port));
-  await page.goto(`${again.address}${hash}`);
+  await revisit(page, again, hash);
   await converged(page);
   const after = await documentOf(page);
   expect(after.figures).toEqual(before.figures);

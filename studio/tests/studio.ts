@@ -56,6 +56,13 @@ export async function startStudio(
   };
 }
 
+/** Opens a document of a studio that was started again; its address may be what it was. */
+export async function revisit(page: Page, studio: Studio, hash: string): Promise<void> {
+  await page.goto(`${studio.address}${hash}`);
+  // Going to the address that a page has leaves the page as it is, and it may not yet be connected.
+  await page.reload();
+}
+
 /** The document as the engine holds it. */
 export async function documentOf(page: Page): Promise<DocumentState> {
   const { hash, origin, search } = new URL(page.url());
