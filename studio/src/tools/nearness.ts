@@ -3,7 +3,7 @@ import type { Viewport } from "../viewport/scene";
 import type { Pointer } from "./tool";
 
 const NEAR = [20, 40]; // px
-const DIRECTIONS = 8;
+const DIRECTIONS = 24;
 
 /** Whether cells lie within a finger's breadth of the pointer. */
 export function isBesideCell(viewport: Viewport, { x, y }: Pointer): boolean {
