@@ -169,6 +169,14 @@ def apply_net(
         items = iter(arrays[f"{name}_items"].tolist())
         return [[names[next(items)] for _ in range(n)] for n in arrays[f"{name}_counts"].tolist()]
 
+    def runs_kept(runs: str, name: str) -> list[Any]:
+        pieces = [(a, n) for a, n in arrays[runs].reshape(-1, 2).tolist() if a >= 0]
+        return [row for a, n in pieces for row in old[name][a : a + n]]
+
+    # A window knows springs by their rows, so a cell can only be kept with all of its springs.
+    springs_kept = set(runs_kept("springs_runs", "springs"))
+    for own in runs_kept("cells_runs", "own"):
+        assert springs_kept.issuperset(own)
     net: dict[str, Any] = {"revision": header["revision"]}
     net["nodes"] = merged("nodes_runs", "nodes", header["node_keys"])
     ends = arrays["spring_ends"].reshape(-1, 2).tolist()

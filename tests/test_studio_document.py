@@ -15,9 +15,11 @@ from springform.errors import DesignError, InputError
 from springform.studio import commands, journal
 from springform.studio.changes import Action, ForestChange, apply, inverse, values_of
 from springform.studio.document import Document
+from springform.studio.editing_messages import SetSprings, SpringChoice
 from springform.studio.frames import net_frame, tables_of
 from springform.studio.library import Library
 from springform.studio.messages import EditCells, EditSpring, FixNode, MoveAnchor, SetValue
+from springform.studio.spring_groups import set_springs
 from studio_client import apply_net, decode
 
 START = sf.load("one-cylinder")
@@ -226,3 +228,15 @@ def test_a_snapshot_spares_the_replay(tmp_path: Path) -> None:
         assert json.loads((folder / "snapshot.json").read_text())["lines"] == 32
     assert json.loads((folder / "snapshot.json").read_text())["lines"] == 40
     assert np.isclose(journal.read(folder)[0].design.cells.squares[:, 1].max(), 1)
+
+
+def test_a_spring_that_changes_stays_with_its_cells() -> None:
+    first, second = (START.nodes[end] for end in START.network().springs[0])
+    request = SetSprings(
+        id=1, choice=SpringChoice(pairs=[f"{first} {second}"]), says={"stiffness": 3.0}
+    )
+    stiffer = apply(START, set_springs(START, request))
+    before = apply_net({}, *decode(net_frame(START, tables_of(START), 1, None)))
+    change = net_frame(stiffer, tables_of(stiffer), 2, (1, tables_of(START)))
+    whole = apply_net({}, *decode(net_frame(stiffer, tables_of(stiffer), 2, None)))
+    assert apply_net(before, *decode(change)) == whole

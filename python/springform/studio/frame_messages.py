@@ -52,6 +52,8 @@ class MotionHeader(Message):
     reason: str
     held: list[int]
     """Nodes that are dragged."""
+    held_by: list[float]
+    """Force with which each of them is held there [N]."""
     waited: float
     """From the change that it follows until its step began [s]; 0 of later steps."""
     took: float

@@ -69,7 +69,8 @@ def tables_of(design: Design) -> Tables:
     values = zip(*(columns[name].tolist() for name in SPRING_COLUMNS), strict=True)
     springs: list[Hashable] = [(*pair, *row) for pair, row in zip(pairs, values, strict=True)]
     around = _grouped(cells.boundaries, nodes)
-    own = _grouped(cells.springs, pairs)
+    # A cell is sent anew if one of its springs is: rows of what went are unknown to the window.
+    own = _grouped(cells.springs, springs)
     identities: list[Hashable] = list(
         zip(cells.addresses, cells.types, stored.tolist(), around, own, strict=True)
     )

@@ -7,6 +7,7 @@ from dataclasses import asdict
 import numpy as np
 
 from .. import _core
+from ..arrays import Floats
 from ..design import Design
 from ..design_schema import BUILT_IN_CELL_TYPES
 from ..network import Equilibrium
@@ -52,6 +53,7 @@ def motion_frame(state: State, design: Design) -> bytes:
         residual=residual if np.isfinite(residual) else None,
         reason=state.reason,
         held=list(state.held),
+        held_by=_sizes(state.reactions[list(state.held)]),
         waited=state.waited,
         took=state.took,
         arrays=[],
@@ -63,6 +65,11 @@ def motion_frame(state: State, design: Design) -> bytes:
             "reactions": state.reactions[design.anchors].astype(np.float32).reshape(-1),
         }
     return encode(header, arrays)
+
+
+def _sizes(vectors: Floats) -> list[float]:
+    sizes: list[float] = np.nan_to_num(np.linalg.norm(vectors, axis=1)).tolist()
+    return sizes
 
 
 def state_of(equilibrium: Equilibrium, revision: int) -> State:

@@ -56,9 +56,34 @@ export function clicked(
   return { kind, keys: others.length < before.keys.length ? others : [...before.keys, key] };
 }
 
-/** What of a selection is in a net. */
+/** What of a selection is in a net; cells that were divided or merged are followed to what is in their place. */
 export function stillThere(selection: Selection, net: Net): Selection {
   const rows = rowsByKey(net, selection.kind);
-  const keys = selection.keys.filter((key) => rows.has(key));
-  return keys.length === selection.keys.length ? selection : { ...selection, keys };
+  if (selection.keys.every((key) => rows.has(key))) return selection;
+  if (selection.kind !== "cells")
+    return { ...selection, keys: selection.keys.filter((key) => rows.has(key)) };
+  const within = cellsWithinCells(net);
+  const keys = selection.keys.flatMap((key) => {
+    const above = upwards(key).find((address) => rows.has(address));
+    return above === undefined ? (within.get(key) ?? []) : [above];
+  });
+  return { ...selection, keys: [...new Set(keys)] };
+}
+
+/** An address and those of the cells that it is part of. */
+function upwards(address: string): string[] {
+  const steps = address.split(".");
+  return steps.map((_, short) => steps.slice(0, steps.length - short).join("."));
+}
+
+/** The cells of a net by every cell that they are part of. */
+function cellsWithinCells(net: Net): Map<string, string[]> {
+  const within = new Map<string, string[]>();
+  for (const address of net.addresses)
+    for (const above of upwards(address).slice(1)) {
+      const known = within.get(above);
+      if (known) known.push(address);
+      else within.set(above, [address]);
+    }
+  return within;
 }

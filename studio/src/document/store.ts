@@ -65,6 +65,8 @@ export interface Hover {
   row: number;
   x: number;
   y: number;
+  /** Width and height of the view [px]. */
+  room: [number, number];
 }
 
 export interface Notice {
@@ -101,6 +103,10 @@ export interface State {
   tool: ToolId;
   /** Type that the brush gives to cells. */
   brushType: string;
+  /** Radius of brushes [px]; the least takes only the cell under the pointer. */
+  brushRadius: number;
+  /** Where a brush is over the view [px]; null without a brush there. */
+  brushAt: [number, number] | null;
   view: View;
   theme: Theme;
   /** Label of what the engine is busy with; empty if it answers at once. */
@@ -118,6 +124,9 @@ const VIEW: View = {
   reactions: false,
   section: null,
 };
+
+/** Sizes of brushes [px]. */
+export const BRUSH_RADII = [6, 18, 36, 64];
 
 const KEPT = "springform view";
 
@@ -158,6 +167,8 @@ export const store = createStore<State>()(() => ({
   hover: null,
   tool: "pull",
   brushType: "6",
+  brushRadius: BRUSH_RADII[0],
+  brushAt: null,
   busy: "",
   notice: null,
   ...keptView(),

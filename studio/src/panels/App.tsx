@@ -16,7 +16,7 @@ import { LiveBanner } from "./LivePanel";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
-import { ToolHelp, ToolRail } from "./ToolRail";
+import { BrushCircle, ToolHelp, ToolRail } from "./ToolRail";
 import { TopBar } from "./TopBar";
 import { type Stage, StageContext, useStudio } from "./use";
 import { ViewportPane } from "./ViewportPane";
@@ -39,6 +39,7 @@ export function App() {
     document.documentElement.dataset.theme = theme;
   }, [theme]);
   useNotices();
+  useFocusFrames();
   useKeys(stage, dialogs, dialog !== null, id !== "");
   const close = useCallback(() => setDialog(null), []);
   return (
@@ -47,7 +48,7 @@ export function App() {
         <StageContext value={stage}>
           {id ? <Workbench key={id} onStage={setStage} /> : <Front />}
           <Overlays open={dialog} onClose={close} />
-          <Toaster theme={theme} position="bottom-left" offset={{ left: 64, bottom: 52 }} />
+          <Toaster theme={theme} position="bottom-left" offset={{ left: 316, bottom: 100 }} />
         </StageContext>
       </DialogsContext>
     </Tooltip.Provider>
@@ -72,12 +73,17 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
     <div className={classes.filter(Boolean).join(" ")}>
       <TopBar />
       <ToolRail />
-      <ViewportPane onStage={onStage}>
-        <ToolHelp />
-        <LockState />
-        <OutlineOverlay />
+      <div className="banner">
         <LookingBanner />
         <LiveBanner />
+      </div>
+      <ViewportPane onStage={onStage}>
+        <div className="notes">
+          <ToolHelp />
+          <LockState />
+        </div>
+        <OutlineOverlay />
+        <BrushCircle />
         <CompareOverlay />
         <LineState />
       </ViewportPane>
@@ -139,6 +145,23 @@ function useNotices(): void {
   useEffect(() => {
     if (notice) toast.error(notice.text, { id: notice.text });
   }, [notice]);
+}
+
+/** Frames round what has the focus are for those who move it by keys; a shortcut moves nothing. */
+function useFocusFrames(): void {
+  useEffect(() => {
+    const page = document.documentElement;
+    const key = ({ key }: KeyboardEvent) => {
+      if (key === "Tab" || key.startsWith("Arrow")) page.dataset.focus = "keys";
+    };
+    const point = () => delete page.dataset.focus;
+    addEventListener("keydown", key, true);
+    addEventListener("pointerdown", point, true);
+    return () => {
+      removeEventListener("keydown", key, true);
+      removeEventListener("pointerdown", point, true);
+    };
+  }, []);
 }
 
 function isTextField(target: EventTarget | null): boolean {

@@ -3,31 +3,75 @@ import { formulaOf, lawOf, SENSES } from "../document/laws";
 import { groupOf, springCells } from "../document/net";
 import { lengthsOf, stressOf } from "../document/quantities";
 import { inDigits } from "../document/scale";
+import type { Hover, State, ToolId } from "../document/store";
 import { useStudio } from "./use";
 
-const WIDTH = 252; // px
-const HEIGHT = 210; // px
+const KEPT_FREE = [360, 280]; // px, where the pointer would be under the card
 
 export function HoverCard() {
   const hover = useStudio((state) => state.hover);
   const net = useStudio((state) => state.net);
   const motion = useStudio((state) => (state.hover ? state.motion : null));
   // The ghost of a graft is what matters then, and the card would hide it.
-  const grafting = useStudio((state) => state.tool === "graft");
-  if (grafting || !hover || !net || !motion || motion.header.revision !== net.revision) return null;
-  const left = hover.x + WIDTH + 24 < innerWidth - 370 ? hover.x + 16 : hover.x - WIDTH - 16;
-  const top = Math.max(8, Math.min(hover.y + 14, innerHeight - 100 - HEIGHT));
+  const tool = useStudio((state) => state.tool);
+  if (tool === "graft" || !hover || !net || !motion || motion.header.revision !== net.revision)
+    return null;
+  // In a corner, so that nothing of what is worked on is hidden.
+  const [wide, high] = hover.room;
+  const under = hover.x > wide - KEPT_FREE[0] && hover.y > high - KEPT_FREE[1];
+  const classes = ["hover-card", under && "above", tool !== "pull" && "small"];
+  if (tool !== "pull")
+    return (
+      <div className={classes.filter(Boolean).join(" ")} role="status">
+        <WouldDo hover={hover} tool={tool} />
+      </div>
+    );
   return (
-    <div
-      className="hover-card"
-      style={{ transform: `translate(${left}px, ${top}px)`, width: WIDTH }}
-      role="status"
-    >
+    <div className={classes.filter(Boolean).join(" ")} role="status">
       {hover.kind === "spring" && <SpringCard spring={hover.row} />}
       {hover.kind === "node" && <NodeCard node={hover.row} />}
       {hover.kind === "cell" && <CellCard cell={hover.row} />}
     </div>
   );
+}
+
+/** What the tool in the hand would do here. */
+function WouldDo({ hover, tool }: { hover: Hover; tool: ToolId }) {
+  const net = useStudio((state) => state.net)!;
+  const does = useStudio((state) => deedOf(tool, state));
+  const anchor = hover.kind === "node" ? net.anchors.indexOf(hover.row) : -1;
+  const name =
+    hover.kind === "cell"
+      ? `Cell ${net.addresses[hover.row]}, type ${net.types[hover.row]}`
+      : hover.kind === "spring"
+        ? "Spring"
+        : anchor >= 0
+          ? `Anchor ${net.anchorNames[anchor]}`
+          : "Node";
+  return (
+    <>
+      <b>{name}</b>
+      <span>{does}</span>
+    </>
+  );
+}
+
+function deedOf(tool: ToolId, { brush, brushType }: State): string {
+  const weighing =
+    brush === null ? "brush: erase" : brush < 1 ? "brush: keep out" : "brush: grow here";
+  const deeds: Partial<Record<ToolId, string>> = {
+    subdivide: "brush: subdivide",
+    retype: `brush: give type ${brushType}`,
+    weigh: weighing,
+    cut: "click: cut it",
+    add: "click: tie a spring here",
+    ring: "click: select the cells round it",
+    row: "click: select its row",
+    loop: "click: select its loop",
+    part: "click: select its cylinder",
+    band: "click: select all of its force",
+  };
+  return deeds[tool] ?? "";
 }
 
 /** Everything that is known of a spring. */

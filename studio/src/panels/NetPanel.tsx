@@ -1,5 +1,6 @@
 // The net as a whole: its figures, before and after the last action, stress-seeking and settings.
 import { useState } from "react";
+import { figuresNow } from "../document/figures";
 import { ask } from "../document/store";
 import { selectExtreme } from "./commands";
 import { DensitySection } from "./DensitySection";
@@ -10,7 +11,7 @@ import { Choice, Fact, NumberField, Section } from "./parts";
 import { ReactionTable } from "./ReactionTable";
 import { SelectionSections } from "./SelectionSections";
 import { SpringEditor } from "./SpringEditor";
-import { useStudio } from "./use";
+import { useCalmNet, useStudio } from "./use";
 
 export function NetPanel() {
   return (
@@ -27,14 +28,31 @@ export function NetPanel() {
   );
 }
 
+/** Figures of the net that is seen while it is not the design at rest, and why not; null at rest. */
+function useUnrest() {
+  const { net, motion } = useCalmNet();
+  const live = useStudio((state) => (state.live?.status ?? "none") !== "none");
+  if (!net || !motion || motion.header.revision !== net.revision) return null;
+  const { held, settled, running } = motion.header;
+  if (!live && !held.length && (settled || running)) return null;
+  const now = figuresNow(net, motion);
+  const why = live
+    ? "of what grew, against my design"
+    : held.length
+      ? "while pulled"
+      : "while paused";
+  return now && { now, why: live ? why : `${why}, against at rest` };
+}
+
 function Figures() {
-  const { figures, before, history, position } = useStudio((state) => state.document)!;
+  const { figures: rest, before: past, history, position } = useStudio((state) => state.document)!;
   const last = history.find(({ number }) => number === position);
+  const unrest = useUnrest();
+  const figures = unrest ? { ...rest, ...unrest.now } : rest;
+  const before = unrest ? rest : past;
+  const against = unrest ? unrest.why : past && last && `against before “${last.label}”`;
   return (
-    <Section
-      title="Figures"
-      aside={before && last && <span className="aside">against before “{last.label}”</span>}
-    >
+    <Section title="Figures" aside={against && <span className="aside">{against}</span>}>
       {!figures.converged && <p className="warning">No equilibrium: {figures.reason}</p>}
       <Fact
         name="Force differential"
@@ -73,7 +91,7 @@ function Figures() {
         unit="m"
         before={before?.shortest_spring}
       />
-      <Fact name="Area" value={figures.area} unit="m²" before={before?.area} />
+      {!unrest && <Fact name="Area" value={figures.area} unit="m²" before={before?.area} />}
     </Section>
   );
 }

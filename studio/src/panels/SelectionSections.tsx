@@ -3,12 +3,13 @@ import { grafting } from "../document/grafting";
 import { groupOf } from "../document/net";
 import { plainType } from "../document/quantities";
 import { selectedRows } from "../document/selection";
-import { commandOf, retype } from "./commands";
+import { commandOf } from "./commands";
 import { useDialogs } from "./dialogs";
 import { foreseen } from "./foreseen";
 import { SpringCard } from "./HoverCard";
 import { NodeSection } from "./NodeSection";
-import { Choice, Fact, Hint, Section } from "./parts";
+import { Fact, Hint, Section } from "./parts";
+import { TypePicker } from "./TypePicker";
 import { useStage, useStudio } from "./use";
 
 export function SelectionSections() {
@@ -34,22 +35,9 @@ function Cells({ rows }: { rows: number[] }) {
     0,
   );
   const kind = kinds.size === 1 ? [...kinds][0] : "";
-  const options = types.map(({ word, name }) => ({
-    value: word,
-    name: word === name ? word : `${word} ${name}`,
-  }));
   return (
     <Section title={rows.length === 1 ? `Cell ${net.addresses[rows[0]]}` : `${rows.length} cells`}>
-      <Choice
-        label="Type"
-        value={kind}
-        options={
-          options.some(({ value }) => value === kind)
-            ? options
-            : [{ value: kind, name: kind || "mixed" }, ...options]
-        }
-        onTake={(value) => value && retype(value)}
-      />
+      <TypePicker cells={rows.map((row) => net.addresses[row])} kind={kind} types={types} />
       <Fact
         name="Level"
         value={[...new Set(rows.map((row) => net.cellLevel[row]))].sort().join(", ")}

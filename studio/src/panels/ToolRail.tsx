@@ -17,7 +17,7 @@ import {
 import type { ReactNode } from "react";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
-import { Choice, IconButton } from "./parts";
+import { Choice, IconButton, Keys } from "./parts";
 import { useStudio } from "./use";
 
 const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
@@ -107,11 +107,33 @@ export function ToolRail() {
 /** What the tool in the hand does, in a line over the net. */
 export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
+  const brushes = tool === "subdivide" || tool === "retype" || tool === "weigh";
   return (
     <div className="tool-help">
       <span>{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</span>
+      {brushes && (
+        <span className="brush-keys">
+          Size <Keys keys="[" /> <Keys keys="]" />
+        </span>
+      )}
       {tool === "retype" && <BrushType />}
     </div>
+  );
+}
+
+/** The brush over the net, as large as it is. */
+export function BrushCircle() {
+  const at = useStudio((state) => state.brushAt);
+  const radius = useStudio((state) => state.brushRadius);
+  if (!at) return null;
+  const size = 2 * radius;
+  const transform = `translate(${at[0] - radius}px, ${at[1] - radius}px)`;
+  return (
+    <i
+      className="brush-circle"
+      aria-hidden="true"
+      style={{ width: size, height: size, transform }}
+    />
   );
 }
 

@@ -3,6 +3,7 @@ import { Anchor, CircleDot, Grid2x2, Maximize, MoveUpRight, Spline } from "lucid
 import { ContextMenu } from "radix-ui";
 import { type ReactNode, useEffect, useRef, useState } from "react";
 import { positionOf } from "../document/motion";
+import { inDigits } from "../document/scale";
 import { cutOf, keeps } from "../document/section";
 import { clicked, springKey } from "../document/selection";
 import { changeView, select, store } from "../document/store";
@@ -29,6 +30,7 @@ export function ViewportPane({
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const names = useRef<HTMLDivElement>(null);
+  const pull = useRef<HTMLDivElement>(null);
   const [failed, setFailed] = useState(false);
   useEffect(() => {
     let viewport: Viewport;
@@ -39,7 +41,10 @@ export function ViewportPane({
       return;
     }
     const hands = new Hands(viewport, canvas.current!);
-    viewport.onDraw = () => placeNames(viewport, names.current!);
+    viewport.onDraw = () => {
+      placeNames(viewport, names.current!);
+      placePull(viewport, pull.current!);
+    };
     onStage({ viewport, hands });
     return () => {
       onStage(null);
@@ -84,6 +89,7 @@ export function ViewportPane({
         <NetMenu />
       </ContextMenu.Root>
       <div className="anchor-names" ref={names} aria-hidden="true" />
+      <div className="pull-force" ref={pull} hidden />
       <HoverCard />
       <PreviewCard />
       <Legend />
@@ -111,6 +117,17 @@ function placeNames(viewport: Viewport, layer: HTMLElement): void {
     if (name.textContent !== net!.anchorNames[anchor]) name.textContent = net!.anchorNames[anchor];
     name.style.transform = `translate(${Math.round(place[0] + 9)}px, ${Math.round(place[1] - 20)}px)`;
   }
+}
+
+/** The force that it takes to hold the node in the hand, beside it. */
+function placePull(viewport: Viewport, label: HTMLElement): void {
+  const { motion } = store.getState();
+  const held = motion?.header.held[0];
+  const place = motion && held !== undefined ? viewport.project(positionOf(motion, held)) : null;
+  label.hidden = !place;
+  if (!motion || !place) return;
+  label.textContent = `${inDigits(motion.header.held_by[0], 3)} N`;
+  label.style.transform = `translate(${Math.round(place[0] + 14)}px, ${Math.round(place[1] + 10)}px)`;
 }
 
 const VIEWS: { view: StandardView; name: string; letter: string; keys: string }[] = [

@@ -3,6 +3,7 @@ import { isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
+import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
 import { CHOOSING_COMMANDS } from "./choosingCommands";
 import { discardGrown, keepGrown, restoreGrown } from "./confirming";
@@ -123,7 +124,26 @@ export function selectExtreme(most: boolean): () => void {
 
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
+const withBrush = ({ tool }: State) =>
+  tool === "subdivide" || tool === "retype" || tool === "weigh";
+
 export const COMMANDS: Command[] = [
+  {
+    id: "brush-larger",
+    label: "Larger brush",
+    group: "Tools",
+    keys: "]",
+    when: withBrush,
+    run: () => resizeBrush(1),
+  },
+  {
+    id: "brush-smaller",
+    label: "Smaller brush",
+    group: "Tools",
+    keys: "[",
+    when: withBrush,
+    run: () => resizeBrush(-1),
+  },
   ...CHOOSING_COMMANDS,
   ...GRAFT_COMMANDS,
   {

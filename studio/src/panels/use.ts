@@ -30,16 +30,18 @@ export function useStage(): Stage | null {
 
 const EVERY = 100; // ms; numbers need not follow every frame
 
-/** The motion now, at most every tenth of a second. */
-export function useCalmMotion() {
-  const [motion, setMotion] = useState(store.getState().motion);
+const seenNow = ({ net, motion } = store.getState()) => ({ net, motion });
+
+/** The net and its motion as they belong together, at most every tenth of a second. */
+export function useCalmNet() {
+  const [seen, setSeen] = useState(seenNow);
   useEffect(() => {
     let timer = 0;
     const stop = store.subscribe((state, before) => {
       if (state.motion === before.motion || timer) return;
       timer = window.setTimeout(() => {
         timer = 0;
-        setMotion(store.getState().motion);
+        setSeen(seenNow());
       }, EVERY);
     });
     return () => {
@@ -47,5 +49,10 @@ export function useCalmMotion() {
       clearTimeout(timer);
     };
   }, []);
-  return motion;
+  return seen;
+}
+
+/** The motion now, at most every tenth of a second. */
+export function useCalmMotion() {
+  return useCalmNet().motion;
 }

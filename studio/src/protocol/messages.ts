@@ -1141,6 +1141,10 @@ export interface MotionHeader {
    */
   held: number[];
   /**
+   * Force with which each of them is held there [N].
+   */
+  held_by: number[];
+  /**
    * From the change that it follows until its step began [s]; 0 of later steps.
    */
   waited: number;

@@ -3,22 +3,23 @@ import { grafting } from "../document/grafting";
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
-import { isBesideCell } from "./nearness";
+import { beginsStroke, cellsUnderBrush } from "./brush";
 import type { Pointer, Tool } from "./tool";
 
 export class Brushing implements Tool {
   readonly reach = { cells: true };
   readonly cursor = "crosshair";
+  readonly brushes = true;
 
   constructor(private readonly what: "subdivide" | "retype") {}
 
-  down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
-    if (hit?.kind === "cell") this.add(viewport, hit);
-    return hit?.kind === "cell" || isBesideCell(viewport, pointer);
+  down(viewport: Viewport, _: Hit | null, pointer: Pointer): boolean {
+    this.add(viewport, pointer);
+    return beginsStroke(viewport, pointer);
   }
 
-  drag(viewport: Viewport, hit: Hit | null): void {
-    if (hit?.kind === "cell") this.add(viewport, hit);
+  drag(viewport: Viewport, _: Hit | null, pointer: Pointer): void {
+    this.add(viewport, pointer);
   }
 
   drop(viewport: Viewport): void {
@@ -36,8 +37,8 @@ export class Brushing implements Tool {
     viewport.redraw(true);
   }
 
-  private add(viewport: Viewport, hit: Hit): void {
-    viewport.brushed.add(hit.row);
+  private add(viewport: Viewport, pointer: Pointer): void {
+    for (const cell of cellsUnderBrush(viewport, pointer)) viewport.brushed.add(cell);
     viewport.redraw(true);
   }
 

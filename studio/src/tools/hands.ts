@@ -65,6 +65,7 @@ export class Hands {
       if (tool === before.tool) return;
       this.tools[before.tool].cancel(this.viewport);
       this.canvas.style.cursor = this.tools[tool].cursor;
+      if (!this.tool.brushes) store.setState({ brushAt: null });
     });
     this.ends.push(stop);
   }
@@ -127,6 +128,7 @@ export class Hands {
   }
 
   private moved(pointer: Pointer): void {
+    if (this.tool.brushes) store.setState({ brushAt: [pointer.x, pointer.y] });
     if (this.press) {
       this.dragged(this.press, pointer);
       return;
@@ -134,7 +136,8 @@ export class Hands {
     const hit = this.viewport.pick(pointer.x, pointer.y, this.tool.reach);
     const { hover } = store.getState();
     if (hit?.kind !== hover?.kind || hit?.row !== hover?.row || hit) {
-      store.setState({ hover: hit ? { ...hit, x: pointer.x, y: pointer.y } : null });
+      const room: [number, number] = [this.canvas.clientWidth, this.canvas.clientHeight];
+      store.setState({ hover: hit ? { ...hit, x: pointer.x, y: pointer.y, room } : null });
     }
     this.tool.hover(this.viewport, hit, pointer);
   }
@@ -156,6 +159,7 @@ export class Hands {
 
   private leave(): void {
     this.last = null;
+    store.setState({ brushAt: null });
     if (!this.press) store.setState({ hover: null });
   }
 

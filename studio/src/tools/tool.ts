@@ -24,6 +24,8 @@ export interface Tool {
   readonly cursor: string;
   /** Whether a drag is followed at once, whatever lies under the pointer. */
   readonly direct?: boolean;
+  /** Whether it passes over cells with a brush, whose size is seen. */
+  readonly brushes?: boolean;
   /** The button goes down on something; returns whether the tool takes the drag from the eye. */
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean;
   /** A drag that the tool took goes on. */

@@ -2,23 +2,24 @@
 import { ask, store } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
-import { isBesideCell } from "./nearness";
+import { beginsStroke, cellsUnderBrush } from "./brush";
 import type { Pointer, Tool } from "./tool";
 
 export class Weighing implements Tool {
   readonly reach = { cells: true };
   readonly cursor = "crosshair";
+  readonly brushes = true;
   /** Cells of this stroke, so that each is asked for once. */
   private readonly stroke = new Set<string>();
 
-  down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
+  down(viewport: Viewport, _: Hit | null, pointer: Pointer): boolean {
     this.stroke.clear();
-    if (hit?.kind === "cell") this.add(hit);
-    return hit?.kind === "cell" || isBesideCell(viewport, pointer);
+    this.add(viewport, pointer);
+    return beginsStroke(viewport, pointer);
   }
 
-  drag(_: Viewport, hit: Hit | null): void {
-    if (hit?.kind === "cell") this.add(hit);
+  drag(viewport: Viewport, _: Hit | null, pointer: Pointer): void {
+    this.add(viewport, pointer);
   }
 
   drop(): void {
@@ -35,15 +36,16 @@ export class Weighing implements Tool {
     this.stroke.clear();
   }
 
-  private add(hit: Hit): void {
+  private add(viewport: Viewport, pointer: Pointer): void {
     const { net, brush, live } = store.getState();
-    const cell = net?.addresses[hit.row];
-    if (!cell || this.stroke.has(cell)) return;
-    this.stroke.add(cell);
+    if (!net) return;
+    const passed = cellsUnderBrush(viewport, pointer).map((row) => net.addresses[row]);
+    const fresh = passed.filter((cell) => !this.stroke.has(cell));
+    for (const cell of fresh) this.stroke.add(cell);
     const weights = Object.keys(live?.weights ?? {});
     // What is taken away from a cell may stand at one above it.
-    const cells =
-      brush === null ? weights.filter((one) => `${cell}.`.startsWith(`${one}.`)) : [cell];
+    const held = (one: string) => fresh.some((cell) => `${cell}.`.startsWith(`${one}.`));
+    const cells = brush === null ? weights.filter(held) : fresh;
     if (cells.length) ask({ type: "weigh_cells", cells, factor: brush }, "Brushing");
   }
 }

@@ -38,6 +38,8 @@ const GHOST: Record<State["theme"], Colour> = { dark: [86, 214, 170], light: [10
 
 const SELECTED_WIDTH = 3.4; // px
 const STILL_AFTER = 180; // ms
+/** While nets come one after the other a pause between two is no rest. */
+const STILL_AFTER_NETS = 2500; // ms
 
 /** Length of the longest reaction arrow over the radius of the net. */
 const ARROW_SHARE = 0.28;
@@ -301,7 +303,8 @@ export class Viewport {
     this.asked = 0;
     const gliding = this.eye.update();
     const { motion } = store.getState();
-    const still = performance.now() - this.lastMove > STILL_AFTER && !gliding;
+    const rest = isRestless() ? STILL_AFTER_NETS : STILL_AFTER;
+    const still = performance.now() - this.lastMove > rest && !gliding;
     clearTimeout(this.stillTimer);
     this.render(!this.software || still);
     // For whoever looks at the page: whether the picture is as fine as it will be.
@@ -310,7 +313,7 @@ export class Viewport {
       this.lastMove = performance.now();
       this.redraw();
     } else if (this.software && !still) {
-      this.stillTimer = window.setTimeout(() => this.redraw(), STILL_AFTER + 20);
+      this.stillTimer = window.setTimeout(() => this.redraw(), rest + 20);
     }
     if (motion) this.onDraw();
   }
@@ -377,13 +380,11 @@ export class Viewport {
 
   private updateMarks({ selection, hover, theme, view }: State, net: Net, motion: Motion): void {
     const springs = new Set(selectedRows(net, selection, "springs"));
-    for (const cell of selectedRows(net, selection, "cells")) {
-      for (const spring of groupOf(net.own, cell)) springs.add(spring);
-    }
     const chosen = [...springs];
     const lit = hover?.kind === "spring" && !springs.has(hover.row) ? hover.row : -1;
     if (lit >= 0) chosen.push(lit);
-    const count = chosen.length + (this.rubber ? 1 : 0);
+    const outline = outlineOf(net, selectedRows(net, selection, "cells"));
+    const count = chosen.length + outline.length + (this.rubber ? 1 : 0);
     const ends = endsOf(net, motion.positions);
     const places = new Float32Array(6 * count);
     const colours = new Uint8Array(3 * count);
@@ -394,10 +395,17 @@ export class Viewport {
       widths[at] =
         spring === lit ? SELECTED_WIDTH + 0.6 : selection.kind === "springs" ? SELECTED_WIDTH : 2.2;
     });
+    outline.forEach(([from, to], side) => {
+      const at = chosen.length + side;
+      places.set([...positionOf(motion, from), ...positionOf(motion, to)], 6 * at);
+      colours.set(INK[theme], 3 * at);
+      widths[at] = 2.4;
+    });
     if (this.rubber) {
-      places.set([...this.rubber.from, ...this.rubber.to], 6 * chosen.length);
-      colours.set(MARK[theme], 3 * chosen.length);
-      widths[chosen.length] = 2.4;
+      const at = count - 1;
+      places.set([...this.rubber.from, ...this.rubber.to], 6 * at);
+      colours.set(MARK[theme], 3 * at);
+      widths[at] = 2.4;
     }
     const cut = cutOf(view.section, motion.positions);
     const marks = clipped(cut, { count, ends: places, colours, widths });
@@ -474,7 +482,7 @@ export class Viewport {
     const weighed = (cell: number) =>
       (factors.get(cell) ?? 1) < 1 ? KEEP_OUT[theme] : GROW_HERE[theme];
     const chosen = new Set(selectedRows(net, selection, "cells"));
-    this.markedSkin.set(net, motion, cells, (cell) =>
+    this.markedSkin.set(net, motion, [...cells].filter(whole), (cell) =>
       chosen.has(cell) && !this.brushed.has(cell)
         ? INK[theme]
         : factors.has(cell) && hover?.row !== cell
@@ -482,6 +490,26 @@ export class Viewport {
           : MARK[theme],
     );
   }
+}
+
+/** Whether the net is evolving before one's eyes. */
+function isRestless(): boolean {
+  const { live, run } = store.getState();
+  return live?.status === "running" || (run?.state.status === "running" && run.state.following);
+}
+
+/** Sides round some cells: what has them on one side only. The springs within stay as they are coloured. */
+function outlineOf(net: Net, cells: number[]): [number, number][] {
+  const sides = new Map<string, [number, number]>();
+  for (const cell of cells) {
+    const around = groupOf(net.boundaries, cell);
+    around.forEach((node, corner) => {
+      const next = around[(corner + 1) % around.length];
+      const key = node < next ? `${node} ${next}` : `${next} ${node}`;
+      if (!sides.delete(key)) sides.set(key, [node, next]);
+    });
+  }
+  return [...sides.values()];
 }
 
 function isSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {

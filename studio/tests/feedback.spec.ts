@@ -1,0 +1,146 @@
+// What the window tells while one works: figures of what is seen, forces of the hand, brushes, selections that stay.
+import { anchorPlace, cellAbove, converged, documentOf, expect, nextPicture, test } from "./studio";
+
+test("figures and the force of the hand follow a pull, and say so", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  const figures = page.locator(".section", { has: page.getByRole("heading", { name: "Figures" }) });
+  const largest = figures.locator(".fact", { hasText: "Largest force" }).locator(".fact-value");
+  const resting = await largest.textContent();
+  const anchor = await anchorPlace(page, "A9");
+  await page.mouse.move(anchor.x, anchor.y);
+  await page.mouse.down();
+  await page.mouse.move(anchor.x - 40, anchor.y - 80, { steps: 6 });
+  await expect(figures).toContainText("while pulled, against at rest");
+  await expect(largest).not.toHaveText(resting!);
+  await expect(page.locator(".pull-force")).toHaveText(/^[\d.]+ N$/);
+  await page.mouse.up();
+  await expect(page.locator(".pull-force")).toBeHidden();
+  await converged(page);
+  await expect(figures).not.toContainText("while pulled");
+});
+
+test("figures of a paused net are of what is seen", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  const figures = page.locator(".section", { has: page.getByRole("heading", { name: "Figures" }) });
+  await page.getByRole("button", { name: "Pause form-finding" }).click();
+  const anchor = await anchorPlace(page, "A9");
+  await page.mouse.move(anchor.x, anchor.y);
+  await page.mouse.down();
+  await page.mouse.move(anchor.x + 60, anchor.y - 120, { steps: 6 });
+  await page.mouse.up();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await expect(figures).toContainText("while paused, against at rest");
+  const { force_max } = (await documentOf(page)).figures;
+  const seen = (await page.getByTestId("legend-high").textContent())!;
+  const value = figures
+    .locator(".fact", { hasText: "Largest force" })
+    .locator(".fact-value > span:not(.fact-change, .unit)");
+  const told = Number(await value.textContent());
+  expect(Math.abs(told - Number.parseFloat(seen))).toBeLessThan(0.01 * told);
+  expect(Math.abs(told - force_max)).toBeGreaterThan(0.01 * told);
+});
+
+test("a cell has its inner force after one of its springs was changed", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  await page.mouse.move(640, 700);
+  const anchor = await anchorPlace(page, "A4");
+  const cell = await cellAbove(page, anchor);
+  await page.mouse.click(anchor.x - 9, anchor.y - 34);
+  await expect(page.getByRole("heading", { name: "Spring", exact: true })).toBeVisible();
+  await page.getByRole("textbox", { name: /^Stiffness k(?!,)/ }).fill("3");
+  await page.getByRole("button", { name: "Apply to the selected spring" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await converged(page);
+  await page.keyboard.press("Control+a");
+  await expect(page.getByRole("heading", { name: /^\d+ cells$/ })).toBeVisible();
+  const inner = page.locator(".fact", { hasText: "Inner force" }).locator(".fact-value");
+  await expect(inner).toHaveText(/^\s*[\d.]+/);
+  await page.mouse.move(cell.x, cell.y);
+});
+
+test("a selection keeps its place when cells are divided, undone and divided again", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const cell = await cellAbove(page, await anchorPlace(page, "A4"));
+  await page.mouse.click(cell.x, cell.y);
+  for (const count of [4, 16]) {
+    await page.keyboard.press("s");
+    await expect(page.getByRole("heading", { name: `${count} cells` })).toBeVisible();
+  }
+  for (const keys of ["Control+z", "Control+z"]) await page.keyboard.press(keys);
+  await expect.poll(async () => (await documentOf(page)).position).toBe(0);
+  await expect(page.getByRole("heading", { name: /^Cell \d+$/ })).toBeVisible();
+  for (const keys of ["Control+Shift+z", "Control+Shift+z"]) await page.keyboard.press(keys);
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  await expect(page.getByRole("heading", { name: "16 cells" })).toBeVisible();
+});
+
+test("a brush is seen as large as it is, and takes what lies under it", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  const cell = await cellAbove(page, await anchorPlace(page, "A4"));
+  await page.mouse.click(cell.x, cell.y);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("b");
+  await page.mouse.move(cell.x + 1, cell.y);
+  const circle = page.locator(".brush-circle");
+  const width = async () => (await circle.boundingBox())!.width;
+  const small = await width();
+  for (const _ of [1, 2]) await page.keyboard.press("]");
+  expect(await width()).toBeGreaterThan(3 * small);
+  await expect(page.locator(".hover-card")).toContainText("brush: subdivide");
+  await page.mouse.down();
+  await page.mouse.up();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  expect((await documentOf(page)).history[0].label).toMatch(/^Subdivide \d+ cells$/);
+  await page.keyboard.press("[");
+  await page.keyboard.press("[");
+  expect(await width()).toBe(small);
+});
+
+test("a type is tried before it is given, and the card lies off the pointer", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const cell = await cellAbove(page, await anchorPlace(page, "A4"));
+  await nextPicture(page);
+  const box = (await page.locator(".hover-card").boundingBox())!;
+  expect(box.x > cell.x + 40 || box.y > cell.y + 40 || box.y + box.height < cell.y - 40).toBe(true);
+  await page.mouse.click(cell.x, cell.y);
+  await page.getByRole("button", { name: "dynamic", exact: true }).hover();
+  await expect(page.locator(".preview-card")).toContainText("type dynamic");
+  await expect(page.locator(".preview-card")).toContainText("force differential");
+  expect((await documentOf(page)).position).toBe(0);
+});
+
+test("frames of the focus are for those who move it by keys", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  const outline = () => page.evaluate(() => getComputedStyle(document.activeElement!).outlineStyle);
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.keyboard.press("Shift");
+  expect(await outline()).toBe("none");
+  await page.keyboard.press("Tab");
+  expect(await outline()).toBe("solid");
+});
+
+test("a banner covers nothing of the net", async ({ page, visit }) => {
+  await visit("one-cylinder");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Evolve live" }).click();
+  const banner = page.locator(".looking.live");
+  await banner.waitFor();
+  const view = page.locator("main.viewport");
+  await expect
+    .poll(async () => {
+      const [over, net] = [await banner.boundingBox(), await view.boundingBox()];
+      return net!.y >= over!.y + over!.height;
+    })
+    .toBe(true);
+  await page.keyboard.press("e");
+  await expect(page.locator(".tool-help")).toBeVisible();
+  await page.getByRole("tab", { name: "Net" }).click();
+  await expect(page.getByText("of what grew, against my design")).toBeVisible();
+  await banner.getByRole("button", { name: "Discard" }).click();
+});
