@@ -92,7 +92,7 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("Shift+L");
   const anchor = await anchorPlace(page, "A3");
-  await lasso(page, anchor.x, anchor.y - 20, 55);
+  await lasso(page, anchor.x, anchor.y - 16, 44);
   await expect(page.getByLabel("Seen from")).toHaveValue("anchor A3");
   await page.getByRole("textbox", { name: "Name", exact: true }).fill("crown");
   await page.getByRole("button", { name: "Copy patch" }).click();
