@@ -175,6 +175,20 @@ def test_a_strut_far_above_eulers_load_turns_over(axial: float, share: float) ->
     np.testing.assert_allclose(result.positions[:, 2], 0.0, atol=1e-9)
 
 
+def test_a_strut_that_is_not_given_the_steps_to_leave_says_so() -> None:
+    network = strut(32, 4 * np.pi**2, 1e6)
+    enough = sf.solve(network)
+    assert enough.converged
+    straight = 0
+    for iterations in range(enough.iterations):
+        result = sf.solve(network, iterations=iterations)
+        assert not result.converged
+        if "would not stay" in result.reason:
+            straight += 1
+            np.testing.assert_allclose(result.positions[:, 2], 0.0, atol=1e-9)
+    assert straight > 0
+
+
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_a_toggle_leaves_its_plane_of_symmetry(share: float) -> None:
     """Two bars up to a loaded top, which goes over sideways where its stiffness across is lost."""

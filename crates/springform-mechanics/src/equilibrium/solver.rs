@@ -152,9 +152,8 @@ impl Solver {
         )
     }
 
-    /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method. Loads that follow
-    /// the shape, which `more` stands for, have a say in what is stable; without them the rest is stable, or unstable by
-    /// its status.
+    /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method. `more` stands for
+    /// loads that follow the shape; whether a rest under them is stable is not looked at, for they have a say in it.
     fn still(
         &mut self,
         network: &Network<'_>,
