@@ -11,7 +11,7 @@ from ..errors import InputError
 from .changes import Action
 from .commands import renamed, whole
 from .document import Document
-from .journal import DocumentSettings, Journal
+from .journal import Journal
 from .library import file_hash
 from .messages import Save
 
@@ -55,11 +55,17 @@ def write(journal: Journal, done: Saving) -> None:
     journal.belong_to(str(done.target), file_hash(done.target))
 
 
-def held(settings: DocumentSettings) -> Design:
-    """Return what a document's file holds. Raises `InputError`: no file, or no valid design."""
-    if settings.file is None:
+def reverting(journal: Journal) -> Action:
+    """Return the action that puts back what a document's file holds, and note that it was read.
+
+    Raises `InputError`: there is no file yet, or it holds no valid design.
+    """
+    file = journal.settings.file
+    if file is None:
         raise InputError("the document has no file yet", key="path")
-    return load(settings.file).closed
+    action = whole(journal.document.design, load(file).closed, f"Go back to {Path(file).name}")
+    journal.belong_to(file, file_hash(file))
+    return action
 
 
 def taken_over(journal: Journal) -> DesignFile | None:
@@ -68,7 +74,7 @@ def taken_over(journal: Journal) -> DesignFile | None:
     if settings.file is None or (now := file_hash(settings.file)) is None:
         return None
     try:
-        design = held(settings)
+        design = load(settings.file).closed
     except InputError:
         return None
     if now != settings.saved:

@@ -344,7 +344,8 @@ class Session:
 
     async def _use_file(self, request: Save | Revert) -> None:
         if isinstance(request, Revert):
-            await self._revert()
+            await self.act(lambda: (own_file.reverting(self._journal), []))
+            self._saved = self.design.to_file()
             return
         # Nothing is done to the design while something else is shown.
         shown = self._looking is None and self._live.live is None
@@ -353,12 +354,6 @@ class Session:
         if (action := done.action) is not None:
             await self.act(lambda: (action, []))
         self._saved = self.design.to_file()
-
-    async def _revert(self) -> None:
-        design = await self._in_thread(lambda: own_file.held(self._journal.settings))
-        label = f"Go back to {Path(self._journal.settings.file or '').name}"
-        await self.act(lambda: (commands.whole(self.design, design, label), []))
-        self._saved = design.to_file()
 
     # --- live evolution ------------------------------------------------------------------------
 
