@@ -39,10 +39,10 @@ test("the law of a cylinder is changed while the net moves, and taken back", asy
 test("every law can be given, and what is refused is said", async ({ page, visit }) => {
   await visit("one-cylinder");
   const laws: [key: string, says: RegExp][] = [
-    ["axial_stiffness", /^EA = .* N · L0 = 0\.8 × drawn$/],
-    ["force_density", /^q = .* N\/m$/],
-    ["force", /^T = .* N$/],
-    ["curve", /^a measured curve · L0 = 0\.8 × drawn$/],
+    ["axial_stiffness", /^EA = .* N · L0 = 0\.8 × drawn · tension$/],
+    ["force_density", /^q = .* N\/m · tension$/],
+    ["force", /^T = .* N · tension$/],
+    ["curve", /^a measured curve · L0 = 0\.8 × drawn · tension$/],
     ["stiffness", /^k = .* N\/m/],
   ];
   for (const [at, [key, says]] of laws.entries()) {

@@ -276,5 +276,5 @@ test("live", async ({ page, open }) => {
   await live.getByLabel("Cells are drawn").hover();
   await page.getByRole("tooltip").waitFor();
   await live.locator("summary").evaluate((summary) => summary.scrollIntoView());
-  await take(page, "live-parameters");
+  await take(page, "parameter-fold");
 });

@@ -22,7 +22,7 @@ test("live evolution obeys its parameters, and a discarded net comes back", asyn
   const before = await documentOf(page);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await page.getByText("Parameters of live evolution").click();
-  const parameters = page.locator(".live-parameters").first();
+  const parameters = page.locator(".parameter-fold").first();
   await parameters.getByLabel("Best is the least").selectOption("differential");
   await parameters.getByLabel("The parent").selectOption("plus");
   await page.getByRole("button", { name: "Evolve live" }).click();

@@ -90,7 +90,7 @@ function LiveParameters({ live }: { live: LiveState }) {
   };
   const changed = live.changed.length;
   return (
-    <details className="live-parameters" onToggle={(event) => setOpen(event.currentTarget.open)}>
+    <details className="parameter-fold" onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>
         Parameters of live evolution
         {changed > 0 && <span className="aside">{changed} changed</span>}

@@ -245,7 +245,7 @@ function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
   return (
     <>
       <details
-        className="live-parameters"
+        className="parameter-fold"
         open={open}
         onToggle={(event) => setOpen(event.currentTarget.open)}
       >

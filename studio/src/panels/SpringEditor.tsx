@@ -102,12 +102,14 @@ function LawForm({ scope }: { scope: Scope }) {
   const [restKey, setRestKey] = useState<RestKey | "">("");
   const [restValue, setRestValue] = useState("");
   const knownSense = shared(rows, (row) => net.sense[row]);
-  const [sense, setSense] = useState(knownSense === null ? "" : SENSES[knownSense].key);
+  const heldSense = knownSense === null ? "" : SENSES[knownSense].key;
+  const [sense, setSense] = useState(heldSense);
   const [diameter, setDiameter] = useState("");
   const chosen = LAWS.find(({ key }) => key === law);
   const newLaw = chosen && chosen !== known;
   const takeLaw = (key: LawKey | "") => {
     setLaw(key);
+    setSense(key && key !== known?.key ? "tension" : heldSense);
     const mean = meansOf(net, motion, rows);
     if (!key || key === known?.key) setConstant(held);
     else setConstant(likely(key, mean.force, mean.length));
@@ -137,10 +139,8 @@ function LawForm({ scope }: { scope: Scope }) {
     if (law && (newLaw || constant !== held))
       says[law] = law === "curve" ? pointsOf(constant) : numberOf(constant);
     if (restKey && chosen?.elastic !== false) says[restKey] = numberOf(restValue);
-    const heldSense = knownSense === null ? "" : SENSES[knownSense].key;
-    // A group that says a law has a sense of its own; what the form shows is what counts.
-    const said = says[law] !== undefined && chosen === known;
-    if (sense && (said || sense !== heldSense)) says.sense = sense;
+    // Springs that are given a law pull only unless said; what the form shows is what counts.
+    if (sense && (says[law] !== undefined || sense !== heldSense)) says.sense = sense;
     if (diameter.trim()) says.diameter = numberOf(diameter) / 1000;
     ask({ type: "set_springs", choice: fullChoice(scope.choice), says }, "Changing the springs");
   };

@@ -129,7 +129,9 @@ export class Connection {
       for (const id of [...this.waiting.keys()]) this.fail(id);
       if (this.closed || refused) return;
       this.listener.line("lost");
-      if (await isUnknown()) {
+      const unknown = await isUnknown();
+      if (this.closed) return;
+      if (unknown) {
         this.listener.line("refused", "the engine was started anew; open the address it printed");
         return;
       }
