@@ -21,7 +21,9 @@ test("the law of a cylinder is changed while the net moves, and taken back", asy
   await page.getByRole("button", { name: "Apply to trunk" }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
   const after = await documentOf(page);
-  expect(after.spring_groups).toEqual([{ title: "trunk", says: "EA = 3 N · L0 = 0.8 × drawn" }]);
+  expect(after.spring_groups).toEqual([
+    { title: "trunk", says: "EA = 3 N · L0 = 0.8 × drawn · tension" },
+  ]);
   expect(after.figures.force_max).not.toBeCloseTo(before.figures.force_max, 3);
   await converged(page);
   await expect(page.getByTestId("legend-high")).toContainText(
