@@ -220,3 +220,18 @@ test("a killed studio has lost nothing that was done", async ({ page, open, home
   await expect.poll(async () => (await documentOf(page)).position).toBe(0);
   await again.kill();
 });
+
+test("undo and redo are done however fast they are asked for", async ({ page, visit }) => {
+  await visit("sheet");
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("g");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  const done = (await documentOf(page)).figures.springs;
+  // No answer of the engine is waited for in between.
+  for (const key of ["Control+z", "Control+Shift+z", "Control+z", "Control+Shift+z"])
+    await page.keyboard.press(key);
+  await expect(page.getByRole("button", { name: "Redo" })).toHaveAttribute("aria-disabled", "true");
+  await converged(page);
+  const { position, figures } = await documentOf(page);
+  expect([position, figures.springs]).toEqual([1, done]);
+});

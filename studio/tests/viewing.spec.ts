@@ -183,7 +183,7 @@ test("a measured curve is loaded from a CSV file for some springs", async ({
   const after = await documentOf(page);
   expect(after.spring_groups.at(-1)).toEqual({
     title: "free rings",
-    says: "a measured curve · L0 = 0.8 × drawn",
+    says: "a measured curve · L0 = 0.8 × drawn · tension",
   });
   expect(after.figures.force_max).not.toBeCloseTo(before.figures.force_max, 3);
 });

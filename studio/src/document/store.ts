@@ -223,9 +223,18 @@ const BUSY_AFTER = 200; // ms
  */
 export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
   const answer = selecting();
+  awaited += 1;
   const reply = await busyWith(label, askQuietly(request));
+  awaited -= 1;
   if (reply?.cells.length) answer({ kind: "cells", keys: reply.cells });
   return reply;
+}
+
+let awaited = 0;
+
+/** Whether an answer is on its way, so that the document here may not be the engine's any more. */
+export function isAwaiting(): boolean {
+  return awaited > 0;
 }
 
 /** What is under way for so long that it is told. */

@@ -3,7 +3,7 @@ import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { useCallback, useEffect, useMemo, useState } from "react";
 import { Toaster, toast } from "sonner";
-import { openDocument, store } from "../document/store";
+import { isAwaiting, openDocument, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { CompareOverlay, CompareTable, useIsComparing } from "./Compare";
 import { commandOfKey, type Dialogs } from "./commands";
@@ -188,7 +188,8 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       if ((event.key === " " || event.key === "Enter") && at?.closest("button, [role=tab]")) return;
       event.preventDefault();
       const viewport = stage?.viewport ?? null;
-      const refused = command.refused ? command.refused(store.getState()) : null;
+      const asks = command.mayBecomePossible && isAwaiting();
+      const refused = asks ? null : (command.refused?.(store.getState()) ?? null);
       if (refused === null) command.run({ viewport, dialogs });
       else toast.message(refused, { id: "refused" });
     };

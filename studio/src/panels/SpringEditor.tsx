@@ -125,7 +125,7 @@ function LawForm({ scope }: { scope: Scope }) {
       ...(restKey ? [[RESTS[restKey].label, restValue]] : []),
       ["The diameter", diameter],
     ];
-    const wrong = given.find(([, text]) => text.trim() !== "" && Number.isNaN(numberOf(text)));
+    const wrong = given.find(([, text]) => text.trim() !== "" && !Number.isFinite(numberOf(text)));
     if (wrong) {
       notify(`${wrong[0]}: “${wrong[1].trim()}” is no number; write one such as 0.8`);
       return;

@@ -36,6 +36,8 @@ export interface Command {
   when?(state: State): boolean;
   /** Whether it can be done now; if not, why. */
   refused?(state: State): string | null;
+  /** Whether an answer that is on its way may make it possible; the engine then says if it is. */
+  mayBecomePossible?: boolean;
   run(stage: { viewport: Viewport | null; dialogs: Dialogs }): void;
 }
 
@@ -445,6 +447,7 @@ export const COMMANDS: Command[] = [
     group: "Document",
     keys: "Ctrl+Z",
     refused: ({ document }) => (document?.position ? null : "nothing was done"),
+    mayBecomePossible: true,
     run: () => undo(false),
   },
   {
@@ -454,6 +457,7 @@ export const COMMANDS: Command[] = [
     keys: "Ctrl+Shift+Z",
     refused: ({ document }) =>
       document && document.position < document.length ? null : "nothing was undone",
+    mayBecomePossible: true,
     run: () => undo(true),
   },
   {
