@@ -1,7 +1,8 @@
 // Takes the pictures of the documentation: every panel and state, into docs/pictures/studio.
+import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
-import { anchorPlace, clickCellAbove, converged, test } from "./studio";
+import { anchorPlace, clickCellAbove, converged, NETS, test } from "./studio";
 
 const FOLDER = join(import.meta.dirname, "../../docs/pictures/studio");
 
@@ -63,8 +64,12 @@ test("overlays", async ({ page, open }) => {
   await page.keyboard.press("?");
   await take(page, "keys");
   await page.keyboard.press("Escape");
+  const files = ["canopy", "atrium", "trunk-and-arms"].map((name) => join(NETS, `${name}.toml`));
+  for (const file of files) writeFileSync(file, "");
   await page.keyboard.press("Control+s");
+  await page.getByRole("button", { name: "canopy.toml" }).waitFor();
   await take(page, "save");
+  for (const file of files) rmSync(file);
   await page.keyboard.press("Escape");
   await page.keyboard.press("d");
   await page.getByRole("button", { name: "Scale and palette" }).click();
@@ -262,13 +267,13 @@ test("live", async ({ page, open }) => {
   await page.getByRole("button", { name: "Keep out", exact: true }).click();
   await clickCellAbove(page, await anchorPlace(page, "A4"));
   await page.getByRole("button", { name: "Grow here" }).click();
-  await clickCellAbove(page, await anchorPlace(page, "A9"));
+  await clickCellAbove(page, await anchorPlace(page, "A1"));
   await take(page, "live-start");
   await page.getByRole("button", { name: "Evolve live" }).click();
   await page.waitForTimeout(4000);
   await take(page, "live");
   const live = page.locator(".section", { hasText: "Live" }).first();
-  await live.getByText("Parameters").click();
+  await live.getByText("Parameters of live evolution").click();
   const mutants = live.getByLabel("Mutants a generation");
   await mutants.fill("0");
   await mutants.press("Enter");
@@ -276,5 +281,5 @@ test("live", async ({ page, open }) => {
   await live.getByLabel("Cells are drawn").hover();
   await page.getByRole("tooltip").waitFor();
   await live.locator("summary").evaluate((summary) => summary.scrollIntoView());
-  await take(page, "parameter-fold");
+  await take(page, "live-parameters");
 });

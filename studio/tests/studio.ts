@@ -1,6 +1,6 @@
 // What every test starts from: a studio of its own, with documents in a folder of its own.
 import { type ChildProcess, spawn } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -9,6 +9,10 @@ import { test as base, expect, type Page } from "@playwright/test";
 import type { DocumentState, Opened, Opening } from "../src/protocol/messages";
 
 export { expect };
+
+/** The folder in which studios are started: that of the tests is nothing to show in pictures. */
+export const NETS = join(tmpdir(), "springform-nets");
+mkdirSync(NETS, { recursive: true });
 
 /** A running studio. */
 export interface Studio {
@@ -38,6 +42,7 @@ export async function startStudio(
   const PATH = `${join(import.meta.dirname, "../../.venv/bin")}:${process.env.PATH}`;
   const child = spawn("springform", words, {
     env: { ...process.env, PATH },
+    cwd: NETS,
     stdio: ["ignore", "pipe", "inherit"],
   });
   const ended = new Promise<void>((resolve) => child.once("exit", () => resolve()));

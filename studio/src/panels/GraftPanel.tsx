@@ -181,26 +181,28 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
             <span title={patch.origin}>{patch.origin}</span>
           </>
         )}
+        <div className="patch-actions">
+          <span className="button patch-do" aria-hidden="true">
+            {chosen ? "Put away" : "Graft"}
+          </span>
+          <IconButton
+            label={`Rename ${patch.name}`}
+            side="left"
+            className="icon-button small"
+            onClick={() => setNaming(true)}
+          >
+            <Pencil />
+          </IconButton>
+          <IconButton
+            label={`Delete ${patch.name}`}
+            side="left"
+            className="icon-button small"
+            onClick={() => ask({ type: "delete_patch", patch: patch.name })}
+          >
+            <Trash2 />
+          </IconButton>
+        </div>
       </div>
-      <span className="button patch-do" aria-hidden="true">
-        {chosen ? "Put away" : "Graft"}
-      </span>
-      <IconButton
-        label={`Rename ${patch.name}`}
-        side="left"
-        className="icon-button small"
-        onClick={() => setNaming(true)}
-      >
-        <Pencil />
-      </IconButton>
-      <IconButton
-        label={`Delete ${patch.name}`}
-        side="left"
-        className="icon-button small"
-        onClick={() => ask({ type: "delete_patch", patch: patch.name })}
-      >
-        <Trash2 />
-      </IconButton>
     </li>
   );
 }
