@@ -215,3 +215,20 @@ test("the sheet of keys fits, and finds actions by word and by key", async ({ pa
   await page.keyboard.press("Escape");
   await expect(sheet).toBeHidden();
 });
+
+test("a net that is out of sight can be found again", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  const canvas = page.locator("main.viewport canvas");
+  await still(page);
+  const lit = (await pictureOf(page)).lit;
+  await canvas.hover();
+  for (let turn = 0; turn < 60; turn++) await page.mouse.wheel(0, 900);
+  const found = page.getByRole("button", { name: "Fit the net F" });
+  await expect(page.getByText("The net is out of sight.")).toHaveCount(0);
+  await page.mouse.down({ button: "middle" });
+  await page.mouse.move(1900, 400, { steps: 5 });
+  await page.mouse.up({ button: "middle" });
+  await found.click();
+  await expect(page.getByText("The net is out of sight.")).toHaveCount(0);
+  await expect.poll(async () => (await pictureOf(page)).lit).toBeGreaterThan(0.6 * lit);
+});

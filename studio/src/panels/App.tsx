@@ -13,6 +13,7 @@ import { Gallery } from "./Gallery";
 import { LockState, OutlineOverlay } from "./GraftPanel";
 import { Inspector } from "./Inspector";
 import { LiveBanner } from "./LivePanel";
+import { OutOfSight } from "./OutOfSight";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
@@ -85,6 +86,7 @@ function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
         <OutlineOverlay />
         <BrushCircle />
         <CompareOverlay />
+        <OutOfSight />
         <LineState />
       </ViewportPane>
       {gallery && <Gallery />}

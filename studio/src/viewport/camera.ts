@@ -15,6 +15,7 @@ const DIRECTIONS: Record<StandardView, [number, number, number]> = {
 };
 
 const GLIDE = 260; // ms
+const DOT = 12; // px
 const MARGIN = 1.16;
 
 /** The camera and its controls. */
@@ -105,6 +106,18 @@ export class Eye {
       this.camera.position.copy(position);
       this.controls.target.copy(target);
     }
+  }
+
+  /** Whether some of these places lie in the picture, farther apart than a dot. */
+  sees(positions: Float32Array, width: number, height: number): boolean {
+    const box = new THREE.Box2();
+    const point = new THREE.Vector3();
+    for (let at = 0; at < positions.length; at += 3) {
+      point.set(positions[at], positions[at + 1], positions[at + 2]).project(this.camera);
+      if (Math.abs(point.x) < 1 && Math.abs(point.y) < 1 && Math.abs(point.z) < 1)
+        box.expandByPoint(new THREE.Vector2((point.x * width) / 2, (point.y * height) / 2));
+    }
+    return !box.isEmpty() && box.getSize(new THREE.Vector2()).length() > DOT;
   }
 
   resize(width: number, height: number): void {

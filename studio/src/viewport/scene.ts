@@ -142,6 +142,13 @@ export class Viewport {
     this.redraw();
   }
 
+  /** Whether the net is in the picture, and larger than a dot. */
+  showsNet(): boolean {
+    const { motion } = store.getState();
+    if (!motion?.positions.length || isComparing()) return true;
+    return this.eye.sees(motion.positions, this.width, this.height);
+  }
+
   /** What lies under a point of the canvas [px]. */
   pick(x: number, y: number, kinds: Parameters<typeof pick>[4]): Hit | null {
     const { net, motion, view } = store.getState();
