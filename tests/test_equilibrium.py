@@ -9,6 +9,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 import springform as sf
+from springform.bench.nets import Cylinder
 
 
 def scipy_equilibrium(network: sf.Network) -> np.ndarray:
@@ -113,6 +114,17 @@ def test_dynamic_relaxation_refuses_what_it_does_not_know() -> None:
     network = sf.Network([[0, 0, 0], [1, 0, 0]], [[0, 1]], [0], self_weight=1.0)
     with pytest.raises(sf.InputError, match="dynamic-relaxation knows no rods"):
         sf.solve(network, solver="dynamic-relaxation")
+
+
+@pytest.mark.parametrize("rest_ratio", [0.6, 0.9, 0.98])
+def test_springs_that_carry_nothing_are_not_taken_for_struts(rest_ratio: float) -> None:
+    # What carries nothing comes out on either side of zero; such a rest is none to leave.
+    network = Cylinder(40, 24).net(rest_ratio).network()
+    loose, exact = (sf.solve(network, tolerance=tolerance) for tolerance in (1e-6, 1e-9))
+    assert loose.converged
+    assert exact.converged
+    assert loose.iterations <= exact.iterations
+    assert exact.forces.min() > -1e-9
 
 
 def test_a_net_that_nothing_holds_says_which_node() -> None:

@@ -7,7 +7,7 @@ use super::interior::{MOST_INTERIOR, interior};
 use super::linear::Linear;
 use super::mixed::{MOST_MIXED, mixed};
 use super::newton::{Change, Ended, Newton};
-use super::stability::{may_be_unstable, way_off};
+use super::stability::{may_be_unstable, pushes, way_off};
 use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
 use super::supports::Supports;
 use super::tangent::{Layout, along};
@@ -186,11 +186,14 @@ impl Solver {
         let (mut status, mut iterations, mut method) = self.move_to_rest(network, settings, positions, limit);
         loop {
             let settled = matches!(status, Status::Converged | Status::Singular);
-            if !settled || !may_be_unstable(network, positions) {
+            if !settled || !may_be_unstable(network) {
                 return (status, iterations, method);
             }
             let Solver { supports, elements, layout, newton, .. } = self;
             let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
+            if !pushes(hill, positions, settings.tolerance) {
+                return (status, iterations, method);
+            }
             let Some(mut moved) = way_off(hill, &mut newton.tangent, positions) else {
                 return (status, iterations, method);
             };

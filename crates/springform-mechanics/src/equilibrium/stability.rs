@@ -31,14 +31,22 @@ const INVERSE_STEPS: u32 = 40;
 const SHORTEST_MOVE: f64 = 1e-7;
 const LONGEST_MOVE: f64 = 0.1;
 
-/// Whether anything in a net can make a rest unstable: springs that push there, or rods. A spring that pulls can't, nor
-/// can dead loads.
-pub(super) fn may_be_unstable(network: &Network<'_>, positions: &[Lanes]) -> bool {
-    let pushes = |spring| {
-        let pushing = network.sense[spring] != Sense::Tension;
-        pushing && network.force_at(spring, length(along(network, spring, positions))) < 0.0
-    };
-    !network.rods.is_empty() || (0..network.springs.len()).any(pushes)
+/// Whether a net has anything that can make a rest unstable: springs that may push, or rods. A spring that pulls can't,
+/// nor can dead loads.
+pub(super) fn may_be_unstable(network: &Network<'_>) -> bool {
+    !network.rods.is_empty() || network.sense.iter().any(|&sense| sense != Sense::Tension)
+}
+
+/// Whether anything in a net pushes: rods, or springs by more than the residual lets pass, `tolerance` times the scale of
+/// forces. Springs that carry nothing come out on either side of zero.
+pub(super) fn pushes(hill: Hill<'_>, positions: &[Lanes], tolerance: f64) -> bool {
+    let Hill { network, least_force, .. } = hill;
+    let (mut least, mut most) = (0.0_f64, least_force);
+    for spring in 0..network.springs.len() {
+        let force = network.force_at(spring, length(along(network, spring, positions)));
+        (least, most) = (least.min(force), most.max(force.abs()));
+    }
+    !network.rods.is_empty() || least < -tolerance * most
 }
 
 /// Positions of a lower energy beside an unstable rest; `None` if the rest is stable as far as rounding shows.
