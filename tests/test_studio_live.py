@@ -210,6 +210,10 @@ def test_parameters_are_changed_before_and_while_it_evolves(window: Window) -> N
     assert window.ask(**change, parameters={"fitness": "differential"})["problem"] is None
     state = live_at(window, state["generation"] + 2)
     assert state["parameters"]["fitness"] == "differential"
+    assert set(state["changed"]) == {"population", "fitness"}
+    assert window.ask(**change, parameters={"fitness": "suf"})["problem"] is None
+    state = live_at(window, state["generation"] + 2)
+    assert (state["parameters"]["fitness"], state["changed"]) == ("suf", ["population"])
     assert window.ask(**change, parameters={"insertions": "a lot"})["key"] == "insertions"
     assert window.ask(type="live_evolve", what="defaults")["problem"] is None
     state = live_at(window, state["generation"] + 2)

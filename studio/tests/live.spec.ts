@@ -99,6 +99,8 @@ test("its parameters are changed while it runs, and refused in the engine's word
   await types.press("Escape");
   await expect(types).toHaveValue("1,6");
   await expect(live.getByRole("alert")).toHaveCount(0);
+  // What is set to its default isn't counted.
+  await expect(live.locator("summary")).toContainText("1 changed");
   // A goal is a pause: it is passed by who goes on.
   const springs = (await documentOf(page)).figures.springs + 60;
   const goal = live.getByLabel("Pause at springs (0: never)");

@@ -38,7 +38,7 @@ class LiveSettings(_Record):
 
     springform_live: Literal[1] = 1
     parameters: dict[str, Any] = {}
-    """Those that a person changed."""
+    """Those that differ from their defaults."""
     weights: dict[str, float] = {}
     """Factors of brushed cells, by address."""
 

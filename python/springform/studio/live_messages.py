@@ -54,7 +54,7 @@ class LiveState(Message):
     """Of the last generations."""
     parameters: dict[str, Any] = Field(default_factory=dict)
     changed: list[str] = Field(default_factory=list)
-    """Names of the parameters that a person changed."""
+    """Names of the parameters that differ from their defaults."""
     weights: dict[str, float] = Field(default_factory=dict)
     """Factors by address of cells."""
     restorable: bool = False

@@ -179,13 +179,15 @@ class LiveStage:
 
     async def _change(self, parameters: dict[str, Any]) -> None:
         """Take other parameters, whether something evolves or not; refused ones change nothing."""
-        changed = self._settings.parameters | parameters
+        method = self._design().file.method
+        values = self._settings.parameters | parameters
+        checked = checked_parameters(DEFAULTS | values, method)
         if self.live is not None:
             await asyncio.to_thread(self.live.change, parameters)
         else:
-            design = self._design()
-            checked = checked_parameters(DEFAULTS | changed, design.file.method)
-            await asyncio.to_thread(start_evolution, design, checked, threads=1)
+            await asyncio.to_thread(start_evolution, self._design(), checked, threads=1)
+        taken, defaults = checked.model_dump(), checked_parameters(DEFAULTS, method).model_dump()
+        changed = {name: value for name, value in values.items() if taken[name] != defaults[name]}
         await self._remember(self._settings.model_copy(update={"parameters": changed}))
 
     async def _forget_changes(self) -> None:

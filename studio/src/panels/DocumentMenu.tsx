@@ -14,7 +14,7 @@ import { useStage, useStudio } from "./use";
 const MOST_RECENT = 8;
 
 export function DocumentMenu() {
-  const [recent, setRecent] = useState<Shelf["documents"]>([]);
+  const [recent, setRecent] = useState<Shelf["documents"] | null>(null);
   const name = useStudio((state) => state.document!.name);
   const load = (open: boolean) => {
     if (open)
@@ -33,12 +33,15 @@ export function DocumentMenu() {
         <DropdownMenu.Content className="menu" align="start" sideOffset={6} collisionPadding={8}>
           <Item id="start" />
           <DropdownMenu.Sub>
-            <DropdownMenu.SubTrigger className="menu-item" disabled={!recent.length}>
-              Recent
-            </DropdownMenu.SubTrigger>
+            <DropdownMenu.SubTrigger className="menu-item">Recent</DropdownMenu.SubTrigger>
             <DropdownMenu.Portal>
               <DropdownMenu.SubContent className="menu" collisionPadding={8}>
-                {recent.slice(0, MOST_RECENT).map(({ id, name: other, changed }) => (
+                {!recent?.length && (
+                  <DropdownMenu.Label className="menu-label">
+                    {recent ? "No other document yet" : "Looking for documents …"}
+                  </DropdownMenu.Label>
+                )}
+                {recent?.slice(0, MOST_RECENT).map(({ id, name: other, changed }) => (
                   <DropdownMenu.Item
                     key={id}
                     className="menu-item"

@@ -854,7 +854,7 @@ export interface LiveState {
     [k: string]: unknown;
   };
   /**
-   * Names of the parameters that a person changed.
+   * Names of the parameters that differ from their defaults.
    */
   changed: string[];
   /**
