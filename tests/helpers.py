@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import springform as sf
 from springform import cli
 
 COMMAND = str(Path(sysconfig.get_path("scripts")) / "springform")
@@ -68,6 +69,24 @@ def in_process(*words: str | Path) -> Result:
             code = request.code
     assert isinstance(code, int)
     return Result(code, out.getvalue(), err.getvalue())
+
+
+def done(*words: str | Path) -> Result:
+    """Run a command that must end well."""
+    result = in_process(*words)
+    assert result.code == 0, result
+    return result
+
+
+def evolved(*words: str, out: str = "run", scene: str = "one-cylinder") -> sf.Run:
+    """Evolve a little from the command line."""
+    done("evolve", scene, "--out", out, *QUICK, *words)
+    return sf.open_run(out)
+
+
+def sought(*words: str, scene: str = "one-cylinder", out: str = "out.toml") -> dict[str, Any]:
+    """Seek stress from the command line; return what it says."""
+    return done("seek", scene, "--out", out, "--json", *words).report
 
 
 def assert_refused(result: Result, *parts: str) -> None:
