@@ -124,7 +124,7 @@ def test_new_nodes_start_between_their_neighbours() -> None:
     equilibrium = DESIGN.solve()
     divided = DESIGN.edited(["30 subdivide 1 1 1 1"])
     old = {key: row for row, key in enumerate(DESIGN.nodes)}
-    positions = carried(divided.network(), divided.nodes, old, equilibrium.positions)
+    positions = carried(divided, DESIGN.nodes, equilibrium.positions)
     for row, key in enumerate(divided.nodes):
         if key in old:
             np.testing.assert_array_equal(positions[row], equilibrium.positions[old[key]])

@@ -142,6 +142,31 @@ def test_a_preview_changes_nothing_and_tells_only_who_asked(server: Server) -> N
         assert second.ask(type="move", what="run")["preview"] is None
 
 
+def test_what_follows_an_action_at_once_is_of_the_net_after_it(server: Server) -> None:
+    """Nothing waits for the motion to show the net: the next request may come before it does."""
+    with server.window() as window:
+        window.settle()
+        done = server.state()["position"]
+        sent = 0
+        for face in range(0, 40, 2):
+            cell = {"what": "subdivide", "cells": [str(face)], "kind": None}
+            following = {"what": "subdivide", "cells": [str(face + 1)], "kind": None}
+            action = {"type": "edit_cells", "id": sent + 3, **following}
+            window.tell(id=sent + 1, type="edit_cells", **cell)
+            for number in (2, 3):
+                window.tell(id=sent + number, type="preview", action=action)
+            sent += 3
+        answered: dict[int, dict[str, Any]] = {}
+        while len(answered) < sent:
+            event = window.receive()
+            if event.get("type") == "reply":
+                answered[event["id"]] = event
+        assert [event["problem"] for event in answered.values() if event["problem"]] == []
+        assert all(answered[number]["preview"]["springs_added"] > 0 for number in range(3, sent, 3))
+        window.number = sent
+        assert window.ask(type="travel", position=done)["problem"] is None
+
+
 def test_a_window_sees_what_another_does(server: Server) -> None:
     with server.window() as first, server.window() as second:
         first.settle()

@@ -206,9 +206,8 @@ def _faces_round(faces: Sequence[Sequence[int]], vertex: int) -> list[tuple[int,
 def _drawn(design: Design, grafted: Grafted, positions: Floats) -> tuple[list[float], list[float]]:
     """Return borders and springs of the cells that a graft writes, as segments on the net now."""
     after = grafted.design
-    network, nodes = after.network(), after.nodes
-    rows = {key: row for row, key in enumerate(design.nodes)}
-    places = carried(network, nodes, rows, positions)
+    network = after.network()
+    places = carried(after, design.nodes, positions)
     written = {face for one in grafted.placed for face in one.cells}
     numbers = np.flatnonzero(np.isin(after.cells.squares[:, 0], sorted(written)))
     starts, items = after.cells.springs

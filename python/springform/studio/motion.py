@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -91,8 +91,7 @@ class Motion:
         """Go on with another net; nodes that it shares with the last one stay where they are."""
         network, nodes = design.network(), design.nodes
         with self._changed:
-            old = {key: row for row, key in enumerate(self._nodes)}
-            self._positions = carried(network, nodes, old, self._positions)
+            self._positions = carried(design, self._nodes, self._positions)
             self._network, self._nodes, self._revision = network, nodes, revision
             self._placed += 1
             self._disturb()
@@ -255,14 +254,14 @@ def with_held(network: Network, positions: Floats, held: Mapping[int, Floats]) -
     return other
 
 
-def carried(
-    network: Network, nodes: list[str], old: Mapping[str, int], positions: Floats
-) -> Floats:
-    """Return where the nodes of a network are: known ones at their positions, new ones between.
+def carried(design: Design, known_nodes: Sequence[str], positions: Floats) -> Floats:
+    """Return where the nodes of a design are: known ones at their positions, new ones between.
 
-    `old` gives the row in `positions` of every known node by its key.
+    `known_nodes` are the keys of the nodes that `positions` are of, (n, 3) [m].
     """
-    rows = np.array([old.get(key, -1) for key in nodes], dtype=np.int64)
+    network = design.network()
+    old = {key: row for row, key in enumerate(known_nodes)}
+    rows = np.array([old.get(key, -1) for key in design.nodes], dtype=np.int64)
     known: NDArray[np.bool_] = np.greater_equal(rows, 0)
     if not known.any():
         return network.positions

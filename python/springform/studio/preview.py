@@ -27,8 +27,7 @@ def preview_of(document: Document, action: Action, positions: Floats) -> Preview
     old_cells, new_cells = set(before.cells.addresses), set(after.cells.addresses)
     new = [place for pair, place in has.items() if pair not in had]
     gone = [place for pair, place in had.items() if pair not in has]
-    rows = {key: row for row, key in enumerate(before.nodes)}
-    placed = carried(after.network(), after.nodes, rows, positions)
+    placed = carried(after, before.nodes, positions)
     return PreviewState(
         springs_added=len(new),
         springs_removed=len(gone),

@@ -57,7 +57,7 @@ from .messages import (
     Welcome,
     protocol,
 )
-from .motion import Motion, State
+from .motion import Motion, State, carried
 from .patches import PatchFolder
 from .pin_messages import Pin, Unpin
 from .pin_stage import Looking, PinStage
@@ -277,14 +277,18 @@ class Session:
                 cells = await self.act(lambda: grafts.graft_action(self.design, patch, request))
             case _:
                 cells = await self.act(
-                    lambda: commands.action_of(self.design, request, self._now())
+                    lambda: commands.action_of(self.design, request, self._now(self.design))
                 )
         self._tell_document()
         return cells
 
-    def _now(self) -> Floats:
-        """Return where the nodes of the net are."""
-        return self.design.solve().positions if self._state is None else self._state.positions
+    def _now(self, design: Design) -> Floats:
+        """Return where the nodes of a design are, new ones between those that the motion knows."""
+        state = self._state
+        if state is None:
+            return design.solve().positions
+        shown, _ = self._nets[state.revision]
+        return state.positions if shown is design else carried(design, shown.nodes, state.positions)
 
     def _goal(self, request: Undo | Travel) -> int:
         document = self._journal.document
@@ -314,9 +318,10 @@ class Session:
     async def _preview(self, request: Preview) -> PreviewState:
         self._check_design_is_shown()
         # A copy of its own, so that actions need not wait for what is only looked at.
-        document, positions = Document(self.design), self._now()
+        document = Document(self.design)
 
         def look() -> PreviewState:
+            positions = self._now(document.design)
             action, _ = commands.action_of(document.design, request.action, positions)
             return preview_of(document, action, positions)
 
@@ -402,7 +407,9 @@ class Session:
             return [], orbits.symmetry_state(self.design)
         self._check_design_is_shown()
         patch = self._patches.load(request.patch)
-        return [], grafts.planned(self.design, patch, request, self._now(), request.measure)
+        return [], grafts.planned(
+            self.design, patch, request, self._now(self.design), request.measure
+        )
 
     async def _file_patch(
         self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch
