@@ -326,7 +326,7 @@ test("two nets are compared side by side under one eye", async ({ page, open, ho
   await page.getByRole("combobox", { name: "Net B" }).selectOption("design");
   await expect(page.getByRole("combobox", { name: "Net B" })).toHaveValue("design");
   const design = (await documentOf(page)).figures;
-  await expect.poll(async () => number((await row("Springs"))[1])).toBe(design.springs);
+  await expect.poll(async () => (await row("Springs")).map(number)[1]).toBe(design.springs);
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("d");
   await accessible(page);

@@ -146,6 +146,8 @@ export class Viewport {
   showsNet(): boolean {
     const { motion } = store.getState();
     if (!motion?.positions.length || isComparing()) return true;
+    // The eye may have been moved since the last picture, or be on its way.
+    if (this.eye.update()) return true;
     return this.eye.sees(motion.positions, this.width, this.height);
   }
 
