@@ -3,19 +3,15 @@
 //! Prints the median time of each stage, and a digest of all measures, which is the same for whatever way they are
 //! computed. `valgrind --tool=callgrind --toggle-collect='individuals::evaluate'` counts its instructions.
 
-use springform_evolution::evolve::{Evolution, Individual, Parameters, Selection};
-use springform_evolution::fitness::{Criterion, Fitness, SufReference};
+use springform_evolution::evolve::{Evolution, Individual, Parameters};
+use springform_evolution::fitness::{Criterion, Fitness};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::{PhenotypeError, Setting};
-use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_evolution::variation::Variation;
+use springform_evolution::selection::Weighting;
 use springform_evolution::workspace::Workspace;
-use springform_mechanics::assembly::{SpringLaw, embed};
-use springform_mechanics::equilibrium::Settings;
-use springform_mechanics::rigging::Rigging;
 use springform_mechanics::stage::STAGES;
 use springform_topology::base_mesh::BaseMesh;
-use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
+use springform_topology::cell_type::{DYNAMIC, QUAD};
 use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
 use springform_topology::framework::{Framework, Grid, Part, Shape, Side};
@@ -86,23 +82,9 @@ fn absorb(hash: u64, individual: &Individual) -> u64 {
 fn grown(recursive: bool, springs: u32) -> Result<Evolution, PhenotypeError> {
     let setting = cylinder(if recursive { Method::Recursive } else { Method::Dynamic });
     let forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
-    let parameters = Parameters {
-        population: 20,
-        seed: 1,
-        types: if recursive { vec![QUAD] } else { vec![QUAD, DYNAMIC] },
-        weights: WeightingParameters::default(),
-        self_adapt: false,
-        criterion: Criterion {
-            fitness: Fitness::Differential,
-            reference: SufReference::Start,
-            niche: None,
-            min_length: None,
-            min_springs: None,
-            max_springs: None,
-        },
-        selection: Selection::Comma,
-        variation: Variation::default(),
-    };
+    let types = if recursive { vec![QUAD] } else { vec![QUAD, DYNAMIC] };
+    let criterion = Criterion::by(Fitness::Differential);
+    let parameters = Parameters { criterion, ..Parameters::new(20, 1, types) };
     let strategy = Strategy {
         insertions: Amount::Count(if recursive { 8.0 } else { 20.0 }),
         switches: Amount::Count(3.0),
@@ -130,14 +112,5 @@ fn cylinder(method: Method) -> Setting {
         rings.iter().flat_map(|&(side, _)| (0..4).map(move |k| anchor(side, k))).collect();
     let target = |height: f64| corners.map(|[x, y]| [x, y, height]);
     let positions = rings.iter().flat_map(|&(_, height)| target(height)).collect();
-    Setting {
-        embedding: embed(&mesh, &anchors, positions),
-        catalogue: Catalogue::default(),
-        method,
-        law: SpringLaw::default(),
-        rigging: Rigging::default(),
-        solver: Settings::default(),
-        anchors,
-        mesh,
-    }
+    Setting::new(mesh, method, anchors, positions)
 }

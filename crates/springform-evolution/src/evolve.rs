@@ -5,7 +5,7 @@
 
 use crate::draws::Draws;
 use crate::ending::{Ending, Reason};
-use crate::fitness::{Criterion, Score, Standing};
+use crate::fitness::{Criterion, Fitness, Score, Standing};
 use crate::lineage::Lineage;
 use crate::mutation::{Candidates, Palette, Strategy};
 use crate::phenotype::{Evaluation, PhenotypeError, Setting};
@@ -53,6 +53,23 @@ pub struct Parameters {
     pub selection: Selection,
     /// Genes, symmetries and the region of mutation.
     pub variation: Variation,
+}
+
+impl Parameters {
+    /// Spring utilization against the start, comma selection and a strategy that stays.
+    #[must_use]
+    pub fn new(population: u32, seed: u64, types: Vec<CellTypeId>) -> Parameters {
+        Parameters {
+            population,
+            seed,
+            types,
+            weights: WeightingParameters::default(),
+            self_adapt: false,
+            criterion: Criterion::by(Fitness::Suf),
+            selection: Selection::Comma,
+            variation: Variation::default(),
+        }
+    }
 }
 
 /// The genotype and standing from which a generation is drawn.

@@ -72,6 +72,19 @@ pub struct Criterion {
 }
 
 impl Criterion {
+    /// Compares all individuals by a fitness, against the start.
+    #[must_use]
+    pub const fn by(fitness: Fitness) -> Criterion {
+        Criterion {
+            fitness,
+            reference: SufReference::Start,
+            niche: None,
+            min_length: None,
+            min_springs: None,
+            max_springs: None,
+        }
+    }
+
     /// Spring utilization factor of a net against the chosen reference.
     pub fn suf(&self, measures: &Measures, start: Standing, parent: Standing) -> Option<f64> {
         let reference = self.reference(start, parent);

@@ -1,7 +1,7 @@
 //! From genotype to measured phenotype: expression, network, equilibrium, measures in one call.
 
 use crate::lineage::{Heir, Lineage};
-use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into};
+use springform_mechanics::assembly::{SpringLaw, assemble, assemble_into, embed};
 use springform_mechanics::embedding::Embedding;
 use springform_mechanics::equilibrium::{Equilibrium, Settings, Solver, Status};
 use springform_mechanics::measures::{Measures, inner_forces};
@@ -75,6 +75,21 @@ pub enum PhenotypeError {
 }
 
 impl Setting {
+    /// Built-in cell types and springs of one stiffness, held by anchors alone: `positions` [m] of every one.
+    #[must_use]
+    pub fn new(mesh: BaseMesh, method: Method, anchors: Vec<u32>, positions: Vec<[f64; 3]>) -> Setting {
+        Setting {
+            embedding: embed(&mesh, &anchors, positions),
+            mesh,
+            catalogue: Catalogue::default(),
+            method,
+            anchors,
+            law: SpringLaw::default(),
+            rigging: Rigging::default(),
+            solver: Settings::default(),
+        }
+    }
+
     /// Filters that write into the forest: level balance under the recursive method.
     ///
     /// # Errors

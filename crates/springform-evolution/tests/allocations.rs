@@ -3,11 +3,10 @@
 mod runs;
 
 use runs::{Start, cylinder};
-use springform_evolution::evolve::{Evolution, Parameters, Selection};
-use springform_evolution::fitness::{Criterion, Fitness, SufReference};
+use springform_evolution::evolve::{Evolution, Parameters};
+use springform_evolution::fitness::{Criterion, Fitness};
 use springform_evolution::mutation::{Amount, Strategy};
-use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_evolution::variation::Variation;
+use springform_evolution::selection::Weighting;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::stage::{STAGES, Stage};
 use springform_topology::cell_type::{DYNAMIC, NULL, QUAD};
@@ -31,24 +30,8 @@ fn evolution(method: Method) -> Evolution {
     let Start { mut setting, forest } = cylinder();
     setting.method = method;
     let types = if method == Method::Recursive { vec![QUAD] } else { vec![NULL, QUAD, DYNAMIC] };
-    let criterion = Criterion {
-        fitness: Fitness::Differential,
-        reference: SufReference::Start,
-        niche: None,
-        min_length: None,
-        min_springs: None,
-        max_springs: None,
-    };
-    let parameters = Parameters {
-        population: POPULATION,
-        seed: 1,
-        types,
-        weights: WeightingParameters::default(),
-        self_adapt: true,
-        criterion,
-        selection: Selection::Comma,
-        variation: Variation::default(),
-    };
+    let criterion = Criterion::by(Fitness::Differential);
+    let parameters = Parameters { self_adapt: true, criterion, ..Parameters::new(POPULATION, 1, types) };
     let strategy = Strategy {
         insertions: Amount::Count(4.0),
         switches: Amount::Share(0.05),

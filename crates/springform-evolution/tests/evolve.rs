@@ -7,10 +7,9 @@ use runs::common::{Dice, cases, dice};
 use runs::{Start, cords, cylinder, starts};
 use springform_evolution::ending::{Ending, Reason};
 use springform_evolution::evolve::{Evolution, Generation, Parameters, Selection};
-use springform_evolution::fitness::{Criterion, Fitness, SufReference};
+use springform_evolution::fitness::{Criterion, Fitness};
 use springform_evolution::mutation::{Amount, Strategy as Rates};
-use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_evolution::variation::Variation;
+use springform_evolution::selection::Weighting;
 use springform_evolution::workspace::Workspace;
 use springform_mechanics::stage::Stage;
 use springform_topology::cell_type::{Catalogue, DYNAMIC, QUAD};
@@ -239,23 +238,8 @@ fn begin_again(evolution: &Evolution, parameters: &Parameters) -> Evolution {
 
 #[test]
 fn comma_selection_takes_worse_parents_on_the_way() {
-    let parameters = Parameters {
-        population: 3,
-        seed: 1,
-        types: vec![QUAD, DYNAMIC],
-        weights: WeightingParameters::default(),
-        self_adapt: false,
-        criterion: Criterion {
-            fitness: Fitness::Differential,
-            reference: SufReference::Start,
-            niche: None,
-            min_length: None,
-            min_springs: None,
-            max_springs: None,
-        },
-        selection: Selection::Comma,
-        variation: Variation::default(),
-    };
+    let criterion = Criterion::by(Fitness::Differential);
+    let parameters = Parameters { criterion, ..Parameters::new(3, 1, vec![QUAD, DYNAMIC]) };
     let (some, few) = (Amount::Count(2.0), Amount::Count(1.0));
     let rates = Rates { insertions: some, switches: few, toggles: few, weighting: Weighting::Exponential };
     let mut evolution = begin(&cylinder(), &parameters, rates, 2);

@@ -9,14 +9,7 @@ use runs::standing;
 use springform_evolution::ending::{Ending, Reason};
 use springform_evolution::fitness::{Criterion, Fitness, Score, Standing, SufReference};
 
-const SUF: Criterion = Criterion {
-    fitness: Fitness::Suf,
-    reference: SufReference::Start,
-    niche: None,
-    min_length: None,
-    min_springs: None,
-    max_springs: None,
-};
+const SUF: Criterion = Criterion::by(Fitness::Suf);
 
 /// Springs and force differential of the start and of the parent.
 const START: Standing = Standing { springs: 100, differential: Some(10.0) };

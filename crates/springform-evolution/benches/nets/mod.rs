@@ -1,18 +1,13 @@
 //! The nets of the benchmarks: a packaged scene, refined by a fixed rule to about 2,000 springs.
 
-use springform_evolution::evolve::{Evolution, Parameters, Selection};
-use springform_evolution::fitness::{Criterion, Fitness, SufReference};
+use springform_evolution::evolve::{Evolution, Parameters};
 use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::Setting;
-use springform_evolution::selection::{Weighting, WeightingParameters};
-use springform_evolution::variation::Variation;
-use springform_mechanics::assembly::{SpringLaw, embed};
-use springform_mechanics::equilibrium::Settings;
+use springform_evolution::selection::Weighting;
 use springform_mechanics::network::Network;
-use springform_mechanics::rigging::Rigging;
 use springform_topology::address::Place;
 use springform_topology::base_mesh::BaseMesh;
-use springform_topology::cell_type::{Catalogue, CellTypeId, DYNAMIC, QUAD};
+use springform_topology::cell_type::{CellTypeId, DYNAMIC, QUAD};
 use springform_topology::edit::Edit;
 use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
@@ -38,16 +33,7 @@ impl Net {
         let mesh = base_mesh(framework);
         let (anchors, positions): (Vec<u32>, Vec<[f64; 3]>) =
             list(framework, "anchors").iter().map(|anchor| target(&mesh, anchor)).unzip();
-        let setting = Setting {
-            embedding: embed(&mesh, &anchors, positions),
-            catalogue: Catalogue::default(),
-            method,
-            law: SpringLaw::default(),
-            rigging: Rigging::default(),
-            solver: Settings::default(),
-            anchors,
-            mesh,
-        };
+        let setting = Setting::new(mesh, method, anchors, positions);
         let mut forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
         refine(&mut forest, method);
         setting.close(&mut forest).expect("a valid forest");
@@ -56,23 +42,7 @@ impl Net {
 
     /// A run with this net as parent; its mutants are those of default parameters.
     pub fn evolution(&self) -> Evolution {
-        let parameters = Parameters {
-            population: 1,
-            seed: 1,
-            types: types(self.setting.method),
-            weights: WeightingParameters::default(),
-            self_adapt: false,
-            criterion: Criterion {
-                fitness: Fitness::Suf,
-                reference: SufReference::Start,
-                niche: None,
-                min_length: None,
-                min_springs: None,
-                max_springs: None,
-            },
-            selection: Selection::Comma,
-            variation: Variation::default(),
-        };
+        let parameters = Parameters::new(1, 1, types(self.setting.method));
         let (three, one) = (Amount::Count(3.0), Amount::Count(1.0));
         let strategy =
             Strategy { insertions: three, switches: three, toggles: one, weighting: Weighting::Exponential };

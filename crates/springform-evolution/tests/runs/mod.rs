@@ -17,12 +17,12 @@ use springform_evolution::mutation::{Amount, Strategy};
 use springform_evolution::phenotype::Setting;
 use springform_evolution::selection::{WEIGHTINGS, WeightingParameters};
 use springform_evolution::variation::Variation;
-use springform_mechanics::assembly::{SpringLaw, embed};
+use springform_mechanics::assembly::SpringLaw;
 use springform_mechanics::equilibrium::Settings;
 use springform_mechanics::measures::Measures;
 use springform_mechanics::rigging::{Law, Rest, Rigging, SpringGroup};
 use springform_topology::base_mesh::BaseMesh;
-use springform_topology::cell_type::{Catalogue, CellTypeId};
+use springform_topology::cell_type::CellTypeId;
 use springform_topology::filters::Method;
 use springform_topology::forest::{Content, Forest};
 use springform_topology::framework::{Framework, Grid, Part, Shape, Side};
@@ -150,16 +150,7 @@ pub fn cylinder() -> Start {
         rings.iter().flat_map(|&(side, _)| (0..4).map(move |k| anchor(side, k))).collect();
     let target = |height: f64| corners.map(|[x, y]| [x, y, height]);
     let positions = rings.iter().flat_map(|&(_, height)| target(height)).collect();
-    let setting = Setting {
-        embedding: embed(&mesh, &anchors, positions),
-        catalogue: Catalogue::default(),
-        method: Method::Dynamic,
-        law: SpringLaw::default(),
-        rigging: Rigging::default(),
-        solver: Settings::default(),
-        anchors,
-        mesh,
-    };
+    let setting = Setting::new(mesh, Method::Dynamic, anchors, positions);
     let forest = Forest::new(setting.mesh.faces().len() as u32, Content::QUAD);
     Start { setting, forest }
 }
