@@ -3,6 +3,7 @@ import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { useCallback, useEffect, useMemo, useState } from "react";
 import { Toaster, toast } from "sonner";
+import { compareAsInAddress } from "../document/comparing";
 import { isAwaiting, openDocument, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { CompareOverlay, CompareTable, useIsComparing } from "./Compare";
@@ -132,7 +133,10 @@ function LineState() {
 function useDocumentInAddress(): string {
   const [id, setId] = useState(documentInAddress);
   useEffect(() => {
-    const follow = () => setId(documentInAddress());
+    const follow = () => {
+      setId(documentInAddress());
+      if (documentInAddress() === store.getState().document?.document) compareAsInAddress();
+    };
     addEventListener("hashchange", follow);
     return () => removeEventListener("hashchange", follow);
   }, []);
