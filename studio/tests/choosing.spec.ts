@@ -396,3 +396,34 @@ test("a comparison survives a reload and a restart, while its run is the one tha
   await expect(figures).toBeHidden();
   await again.kill();
 });
+
+test("a pin is renamed by mouse and by keys, and stays so", async ({ page, visit }) => {
+  await visit("one-cylinder");
+  await page.keyboard.press("p");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  const pin = page.getByRole("list", { name: "Pinned nets" }).getByRole("listitem");
+  const field = page.getByRole("textbox", { name: "Name of the pin" });
+  await page.getByRole("button", { name: "Rename Design at the start" }).click();
+  await expect(field).toBeFocused();
+  await page.keyboard.type("Bare hall");
+  await page.locator(".panel-evolve h2").first().click();
+  await expect(pin).toContainText("Bare hall");
+  // Tab leads to its picture; what is typed then is a name, not a command.
+  await page.getByRole("button", { name: "Look at Bare hall" }).focus();
+  await page.keyboard.press("F2");
+  await page.keyboard.type("Ship");
+  await page.keyboard.press("Enter");
+  await expect(pin).toContainText("Ship");
+  await expect(page.getByRole("button", { name: "Look at Ship" })).toBeFocused();
+  await page.keyboard.press("F2");
+  await page.keyboard.type("Nothing");
+  await page.keyboard.press("Escape");
+  await expect(field).toBeHidden();
+  await accessible(page);
+  await page.reload();
+  await converged(page);
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await expect(pin).toContainText("Ship");
+  expect((await documentOf(page)).position).toBe(0);
+  expect((await documentOf(page)).looking).toBeNull();
+});

@@ -94,6 +94,11 @@ export function togglePin(side: Side): void {
   else ask({ type: "pin", side }, "Pinning");
 }
 
+/** Calls a pin something else. */
+export function renamePin(pin: PinState, label: string): void {
+  if (label !== pin.label) ask({ type: "rename_pin", pin: pin.number, label }, "Renaming");
+}
+
 /** Shows a net. */
 export function lookAt(side: Side): void {
   const [kind, first, second] = side.split("/");
