@@ -161,6 +161,7 @@ class LiveStage:
         if parameters:
             await self._change(parameters)
         self.live = await asyncio.to_thread(self._begun, self._design(), None)
+        self._tell(self.state())
         self._grew()
 
     async def _restore(self) -> None:

@@ -109,6 +109,8 @@ export interface State {
   brushAt: [number, number] | null;
   view: View;
   theme: Theme;
+  /** Actions that are asked for and not answered, so that the document here may not be the engine's any more. */
+  awaited: number;
   /** Label of what the engine is busy with; empty if it answers at once. */
   busy: string;
   /** The last problem, for a toast. */
@@ -169,6 +171,7 @@ export const store = createStore<State>()(() => ({
   brushType: "6",
   brushRadius: BRUSH_RADII[0],
   brushAt: null,
+  awaited: 0,
   busy: "",
   notice: null,
   ...keptView(),
@@ -217,24 +220,36 @@ export function openDocument(id: string): void {
 
 const BUSY_AFTER = 200; // ms
 
+/** What is asked for and not answered. */
+const asked = new Set<string>();
+
 /**
- * Asks the engine to do something; what it made is selected. Failures become a notice.
- * Resolves to the reply, or to null if it failed.
+ * Asks the engine to do something. Failures become a notice. What is asked for already is not asked for twice:
+ * somebody pressed a button twice. `take` is given the reply before anything else has its turn; by default it selects
+ * the cells that were made.
+ * Resolves to the reply, or to null if it failed or is on its way.
  */
-export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
-  const answer = selecting();
-  awaited += 1;
+export async function ask(
+  request: Asking,
+  label = "Working",
+  take = selectingMade(),
+): Promise<Reply | null> {
+  const words = JSON.stringify(request);
+  if (asked.has(words)) return null;
+  asked.add(words);
+  store.setState({ awaited: asked.size });
   const reply = await busyWith(label, askQuietly(request));
-  awaited -= 1;
-  if (reply?.cells.length) answer({ kind: "cells", keys: reply.cells });
+  asked.delete(words);
+  if (reply) take(reply);
+  store.setState({ awaited: asked.size });
   return reply;
 }
 
-let awaited = 0;
-
-/** Whether an answer is on its way, so that the document here may not be the engine's any more. */
-export function isAwaiting(): boolean {
-  return awaited > 0;
+function selectingMade(): (reply: Reply) => void {
+  const answer = selecting();
+  return ({ cells }) => {
+    if (cells.length) answer({ kind: "cells", keys: cells });
+  };
 }
 
 /** What is under way for so long that it is told. */

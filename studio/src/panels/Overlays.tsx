@@ -8,6 +8,7 @@ import { useDialogs } from "./dialogs";
 import { FolderList } from "./FolderList";
 import { KeySheet } from "./KeySheet";
 import { Keys } from "./parts";
+import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
 export type OpenDialog = "palette" | "keys" | "save" | null;
@@ -31,7 +32,7 @@ function CommandPalette({ onClose }: { onClose(): void }) {
   const dialogs = useDialogs();
   const run = (command: Command) => {
     onClose();
-    command.run({ viewport, dialogs });
+    perform(command, { viewport, dialogs });
   };
   return (
     <Dialog.Content className="dialog palette" aria-describedby={undefined}>
