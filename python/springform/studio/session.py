@@ -283,8 +283,11 @@ class Session:
         return cells
 
     def _now(self) -> Floats:
-        """Return where the nodes of the net are."""
-        return self.design.solve().positions if self._state is None else self._state.positions
+        """Return where the nodes of the net are, or come to rest if it was not yet in motion."""
+        state = self._state
+        if state is not None and state.revision == self._revision:
+            return state.positions
+        return self.design.solve().positions
 
     def _goal(self, request: Undo | Travel) -> int:
         document = self._journal.document
