@@ -62,13 +62,13 @@ export function anchorsAtSelection(): string[] {
 }
 
 export function listPatches(): void {
-  ask({ type: "list_patches" });
+  ask({ type: "list_patches" }, "Reading patches");
 }
 
 /** Reads which symmetries there are. */
 export async function readSymmetry(): Promise<void> {
   try {
-    const { answer } = await askQuietly({ type: "ask_symmetry" });
+    const { answer } = await askQuietly({ type: "ask_symmetry" }, "Looking for symmetries");
     grafting.setState({ symmetry: answer as SymmetryState });
   } catch {
     grafting.setState({ symmetry: null });
@@ -122,11 +122,10 @@ export async function plan(): Promise<void> {
   }
   asking = true;
   try {
-    const { answer } = await askQuietly({
-      type: "plan_graft",
-      measure: pinned || place === "anchors",
-      ...wanted,
-    });
+    const { answer } = await askQuietly(
+      { type: "plan_graft", measure: pinned || place === "anchors", ...wanted },
+      "Placing the patch",
+    );
     if (grafting.getState().chosen === wanted.patch)
       grafting.setState({ plan: answer as GraftPlan, problem: "" });
   } catch (error) {

@@ -11,6 +11,7 @@ import type {
   Reply,
   RunState,
 } from "../protocol/messages";
+import { onWaits } from "../protocol/waits";
 import { type Brushes, SORT, type Sort } from "./choosing";
 import type { ColourChoice } from "./colouring";
 import { grafting } from "./grafting";
@@ -111,7 +112,7 @@ export interface State {
   theme: Theme;
   /** Actions that are asked for and not answered, so that the document here may not be the engine's any more. */
   awaited: number;
-  /** Label of what the engine is busy with; empty if it answers at once. */
+  /** What is waited for; empty if everything comes at once. */
   busy: string;
   /** The last problem, for a toast. */
   notice: Notice | null;
@@ -204,7 +205,6 @@ export function openDocument(id: string): void {
     preview: null,
     selection: NOTHING,
     hover: null,
-    busy: "",
   };
   store.setState({ ...closed, line: id ? "connecting" : "closed", problem: "" });
   if (!id) return;
@@ -218,7 +218,7 @@ export function openDocument(id: string): void {
   });
 }
 
-const BUSY_AFTER = 200; // ms
+onWaits((busy) => store.setState({ busy }));
 
 /** What is asked for and not answered. */
 const asked = new Set<string>();
@@ -231,14 +231,14 @@ const asked = new Set<string>();
  */
 export async function ask(
   request: Asking,
-  label = "Working",
+  label: string,
   take = selectingMade(),
 ): Promise<Reply | null> {
   const words = JSON.stringify(request);
   if (asked.has(words)) return null;
   asked.add(words);
   store.setState({ awaited: asked.size });
-  const reply = await busyWith(label, askQuietly(request));
+  const reply = await orNotice(askQuietly(request, label));
   asked.delete(words);
   if (reply) take(reply);
   store.setState({ awaited: asked.size });
@@ -252,32 +252,20 @@ function selectingMade(): (reply: Reply) => void {
   };
 }
 
-/** What is under way for so long that it is told. */
-const underWay = new Set<{ label: string }>();
-
-/** Tells what is under way while it is; failures become a notice. Resolves to null if it failed. */
-export async function busyWith<T>(label: string, work: Promise<T>): Promise<T | null> {
-  const own = { label };
-  const tellBusy = () => store.setState({ busy: [...underWay].at(-1)?.label ?? "" });
-  const timer = setTimeout(() => {
-    underWay.add(own);
-    tellBusy();
-  }, BUSY_AFTER);
+/** What comes of something; failures become a notice, and null. */
+export async function orNotice<T>(work: Promise<T>): Promise<T | null> {
   try {
     return await work;
   } catch (error) {
     notify((error as Error).message);
     return null;
-  } finally {
-    clearTimeout(timer);
-    if (underWay.delete(own)) tellBusy();
   }
 }
 
-/** Asks the engine something that nobody waits for; throws `Error` with its problem. */
-export async function askQuietly(request: Asking): Promise<Reply> {
+/** Asks the engine something and leaves it to the caller to say what is wrong; throws `Refused`. */
+export async function askQuietly(request: Asking, label: string): Promise<Reply> {
   if (!connection) throw new Error("no document is open");
-  return connection.ask(request);
+  return connection.ask(request, label);
 }
 
 /** Tells the engine something that it does not answer. */

@@ -16,6 +16,7 @@ import { Inspector } from "./Inspector";
 import { LiveBanner } from "./LivePanel";
 import { OutOfSight } from "./OutOfSight";
 import { type OpenDialog, Overlays } from "./Overlays";
+import { Busy } from "./parts";
 import { perform } from "./performing";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
@@ -63,6 +64,9 @@ function Front() {
     <div className="front">
       <TopBar />
       <StartPage />
+      <footer className="front-busy">
+        <Busy />
+      </footer>
     </div>
   );
 }

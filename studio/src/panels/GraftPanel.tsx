@@ -134,7 +134,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
   const [naming, setNaming] = useState(false);
   const rename = (name: string) => {
     setNaming(false);
-    if (name !== patch.name) ask({ type: "rename_patch", patch: patch.name, name });
+    if (name !== patch.name) ask({ type: "rename_patch", patch: patch.name, name }, "Renaming");
   };
   const put = () => {
     if (chosen) store.setState({ tool: "pull" });
@@ -187,7 +187,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
             label={`Delete ${patch.name}`}
             side="left"
             className="icon-button small"
-            onClick={() => ask({ type: "delete_patch", patch: patch.name })}
+            onClick={() => ask({ type: "delete_patch", patch: patch.name }, "Deleting")}
           >
             <Trash2 />
           </IconButton>

@@ -7,7 +7,7 @@ import { COMMANDS, type Command, GROUPS } from "./commands";
 import { useDialogs } from "./dialogs";
 import { FolderList } from "./FolderList";
 import { KeySheet } from "./KeySheet";
-import { Keys } from "./parts";
+import { Busy, Keys } from "./parts";
 import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
@@ -81,7 +81,7 @@ function SaveDialog({ onClose }: { onClose(): void }) {
   const save = async (event: FormEvent) => {
     event.preventDefault();
     try {
-      await askQuietly({ type: "save", path, replace });
+      await askQuietly({ type: "save", path, replace }, "Saving");
       onClose();
     } catch (error) {
       setProblem((error as Error).message);
@@ -117,6 +117,7 @@ function SaveDialog({ onClose }: { onClose(): void }) {
           </p>
         )}
         <div className="row end">
+          <Busy />
           <Dialog.Close className="button">Cancel</Dialog.Close>
           <button type="submit" className="button primary">
             Save

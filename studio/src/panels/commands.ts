@@ -94,7 +94,7 @@ export function undo(redo: boolean): void {
 }
 
 export function move(what: "run" | "pause" | "step" | "reset"): void {
-  ask({ type: "move", what });
+  ask({ type: "move", what }, "Moving the net");
 }
 
 export function seek(steps: number): void {

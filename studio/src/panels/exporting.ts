@@ -2,9 +2,10 @@
 import { comparing, isComparing, sharedColour, sharedQuantity } from "../document/comparing";
 import { formulaText, kindOf, type Quantity, quantityOf } from "../document/quantities";
 import { inDigits, type Scale, scaleOf } from "../document/scale";
-import { busyWith, store } from "../document/store";
+import { orNotice, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { fetchModel } from "../protocol/fetching";
+import { waited } from "../protocol/waits";
 import type { Viewport } from "../viewport/scene";
 import type { Legend } from "../viewport/vector";
 
@@ -18,7 +19,7 @@ export const MODELS = [
 
 export async function exportPicture(viewport: Viewport): Promise<void> {
   const legend = isComparing() ? sharedLegend() : legendOf(viewport);
-  const picture = await busyWith("Drawing the picture", viewport.picture(legend));
+  const picture = await orNotice(waited("Drawing the picture", viewport.picture(legend)));
   if (picture) save(picture, "png");
 }
 
@@ -56,7 +57,7 @@ function scaleLegend(quantity: Quantity, { low, high, logarithmic }: Scale): Leg
 }
 
 export async function exportModel(format: (typeof MODELS)[number]["name"]): Promise<void> {
-  const content = await busyWith("Writing the file", fetchModel(documentInAddress(), format));
+  const content = await orNotice(fetchModel(documentInAddress(), format));
   if (content) save(content, format === "tables" ? "zip" : format);
 }
 

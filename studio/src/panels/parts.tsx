@@ -1,7 +1,23 @@
 // Small parts that all panels are made of: buttons with tooltips, keys, numbers, fields.
+import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { type ComponentProps, type ReactNode, useEffect, useRef, useState } from "react";
 import { inDigits } from "../document/scale";
+import { useStudio } from "./use";
+
+/** What is waited for, if anything is. */
+export function Busy() {
+  const busy = useStudio((state) => state.busy);
+  return (
+    <span className="busy" role="status">
+      {busy && (
+        <>
+          <LoaderCircle /> {busy} …
+        </>
+      )}
+    </span>
+  );
+}
 
 /** Keys as they are printed on a keyboard. */
 export function Keys({ keys }: { keys: string }) {
