@@ -94,6 +94,18 @@ def test_a_plan_changes_nothing_and_a_graft_is_one_action(server: Server) -> Non
         assert turned["placed"] == plan["placed"]
 
 
+def test_a_plan_asked_for_right_after_an_action_is_of_the_net_that_it_made(server: Server) -> None:
+    with server.window() as window:
+        lift_crown(window)
+        window.settle()
+        for cell in ("3", "7", "11", "15"):
+            window.tell(id=-1, type="edit_cells", what="subdivide", cells=[cell], kind="1")
+            plan = window.ask(type="plan_graft", measure=True, **PLACE)
+            assert plan["problem"] is None
+            springs = server.state()["figures"]["springs"]
+            assert plan["answer"]["before"]["springs"] == springs
+
+
 def test_what_does_not_fit_says_why(server: Server) -> None:
     with server.window() as window:
         lift_crown(window)

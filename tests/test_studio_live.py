@@ -13,8 +13,15 @@ import pytest
 
 import springform as sf
 from springform.errors import InputError
+from springform.run_format import GenerationLine
 from springform.studio.live import Live
-from springform.studio.live_file import Standing, read_standing
+from springform.studio.live_file import (
+    Standing,
+    add_generation,
+    forget_standing,
+    read_standing,
+    write_standing,
+)
 from studio_client import Server, Window, serving
 
 DESIGN = sf.load("one-cylinder")
@@ -28,7 +35,10 @@ class Watched:
         self.kept: list[Standing] = []
         values = {"population": 8} | parameters
         design = DESIGN if standing is None else standing.grown()
-        self.live = Live(design, values, self.told.set, self.kept.append, standing)
+        self.lines: list[GenerationLine] = []
+        self.live = Live(
+            design, values, self.told.set, self.kept.append, self.lines.append, standing
+        )
 
     def until(self, generation: int) -> None:
         while self.live.generation < generation:
@@ -115,6 +125,89 @@ def test_what_was_put_on_the_disk_goes_on_as_if_nothing_had_been(watched: Watche
     after = [list(one.live.points) for one in (watched, again)]
     number = len(standing.points) + 4
     assert after[0][:number] == after[1][:number]
+
+
+def test_every_generation_is_on_the_disk_as_the_net_or_as_a_line_after_it(
+    watched: Watched, tmp_path: Path
+) -> None:
+    watched.until(30)
+    watched.live.close()
+    # The net as it was once, and the lines that came until the next one: what a kill leaves.
+    kept = [standing.generation for standing in watched.kept]
+    lines = [line.generation for line in watched.lines]
+    assert sorted({*kept, *lines}) == list(range(1, watched.live.generation + 1))
+    first, last = watched.kept[0], watched.kept[-1]
+    write_standing(tmp_path, first)
+    between = watched.lines[: kept[1] - kept[0] - 1]
+    assert len(between) > 3
+    for line in between:
+        add_generation(tmp_path, line)
+    found = read_standing(tmp_path)
+    assert found is not None
+    assert found.generation == first.generation + len(between)
+    assert found.points == last.points[: found.generation]
+    again = Watched(found)
+    try:
+        again.live.go_on()
+        again.until(last.generation)
+    finally:
+        design = again.live.close()
+    assert list(again.live.points)[: last.generation] == last.points
+    if again.live.generation == last.generation:
+        assert design.forest == last.grown().forest
+
+
+def test_lines_cut_short_or_older_do_not_count(watched: Watched, tmp_path: Path) -> None:
+    watched.until(6)
+    watched.live.close()
+    first, lines = watched.kept[0], watched.lines
+    for line in lines[:2]:
+        add_generation(tmp_path, line)
+    assert read_standing(tmp_path) is None
+    write_standing(tmp_path, first)
+    assert read_standing(tmp_path) == first
+    for line in lines[:3]:
+        add_generation(tmp_path, line)
+    path = tmp_path / "grown.jsonl"
+    path.write_bytes(path.read_bytes()[:-9])
+    cut = read_standing(tmp_path)
+    assert cut is not None
+    assert cut.generation == lines[1].generation
+    for line in lines[2:4]:
+        add_generation(tmp_path, line)
+    whole = read_standing(tmp_path)
+    assert whole is not None
+    assert whole.generation == lines[3].generation
+    forget_standing(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_parent_adapted_outlives_a_kill_and_a_moved_anchor() -> None:
+    watched = Watched(self_adapt=True, selection="comma", insertions="3", toggles="2")
+    try:
+        watched.until(5)
+        watched.live.pause()
+        while watched.live.generation != watched.kept[-1].generation:
+            watched.told.wait(30)
+            watched.told.clear()
+        standing = watched.kept[-1]
+        assert standing.strategy is not None
+        assert standing.strategy != watched.live.parameters.strategy()
+        again = Watched(standing, self_adapt=True, selection="comma", insertions="3", toggles="2")
+        for one in (watched, again):
+            one.live.go_on()
+            one.until(standing.generation + 3)
+        again.live.close()
+        count = len(standing.points) + 3
+        assert list(again.live.points)[:count] == list(watched.live.points)[:count]
+        watched.live.pause()
+        watched.live.move_anchor("A1", (0.5, 0.25, 3.0))
+        while watched.kept[-1].grown().file.framework.anchors[0].position != (0.5, 0.25, 3.0):
+            watched.told.wait(30)
+            watched.told.clear()
+        assert watched.kept[-1].strategy == watched.lines[-1].strategy
+    finally:
+        watched.live.close()
 
 
 def test_a_goal_is_a_pause_that_can_be_passed() -> None:

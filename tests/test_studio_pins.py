@@ -125,6 +125,43 @@ def test_a_net_taken_over_is_pinned_as_the_individual_that_it_is(server: Server)
         assert [one["number"] for one in listed] == [2, 3]
 
 
+def test_a_pin_is_renamed_for_all_windows_and_for_good(server: Server, tmp_path: Path) -> None:
+    with server.window() as window, server.window() as other:
+        pin(window, "run/4/3")
+        pin(window, "run/2/1")
+        while len(told := pins(other)) < 2:
+            pass
+        assert window.ask(type="rename_pin", pin=2, label="Lobby, third try")["problem"] is None
+        renamed = [told[0], told[1] | {"label": "Lobby, third try"}]
+        assert pins(other) == renamed
+        assert "no such pin" in window.ask(type="rename_pin", pin=9, label="Hall")["problem"]
+        for unfit in ("", " Hall", "a" * 81):
+            window.tell(type="rename_pin", id=99, pin=2, label=unfit)
+            while (event := window.receive()).get("type") != "problem":
+                pass
+            assert "label" in event["message"]
+    server.process.kill()
+    server.process.wait()
+    with serving(tmp_path / "home") as again:
+        again.document = server.document
+        with again.window() as window:
+            assert pins(window) == renamed
+            assert (
+                window.ask(type="look", generation=None, individual=None, pin=2)["problem"] is None
+            )
+            assert again.state()["looking"]["label"] == "Generation 2, individual 1"
+
+
+def test_a_design_taken_over_from_a_pin_keeps_the_name_of_the_pin(server: Server) -> None:
+    with server.window() as window:
+        pin(window, "design")
+        window.ask(type="rename_pin", pin=1, label="Oslo")
+        window.ask(type="look", generation=None, individual=None, pin=1)
+        assert server.state()["looking"]["label"] == "Oslo"
+        window.ask(type="reinstate")
+        assert server.state()["history"][-1]["label"] == "Take over Oslo"
+
+
 def test_two_nets_are_compared_as_the_package_compares_them(run: sf.Run, server: Server) -> None:
     first, second = run.individual(5, 2), run.individual(1, 0)
     with server.window() as window:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -48,7 +48,7 @@ SCHEMA = pa.schema(
 
 _Count = Annotated[int, Field(ge=0, lt=2**32)]
 _Amount = tuple[bool, Annotated[float, Field(ge=0)]]
-_Strategy = tuple[_Amount, _Amount, _Amount, Weighting]
+Strategy = tuple[_Amount, _Amount, _Amount, Weighting]
 
 
 class _Record(BaseModel):
@@ -76,7 +76,7 @@ class GenerationLine(_Record):
     springs: _Count
     force_differential: float | None
     suf: float | None
-    strategy: _Strategy
+    strategy: Strategy
     edits: list[str]
 
 
@@ -89,6 +89,21 @@ class ChangeLine(_Record):
 
 JournalLine = GenerationLine | ChangeLine
 _LINE: TypeAdapter[JournalLine] = TypeAdapter(JournalLine)
+
+
+def generation_line(
+    generation: int, result: Mapping[str, Any], parent: Mapping[str, Any]
+) -> GenerationLine:
+    """Return what is kept of a generation, from its result and the measures of the new parent."""
+    return GenerationLine(
+        generation=generation,
+        parent=result["winner"],
+        springs=parent["springs"],
+        force_differential=parent["force_differential"],
+        suf=result["suf"],
+        strategy=result["strategy"],
+        edits=result["edits"],
+    )
 
 
 def is_run(folder: str | os.PathLike[str]) -> bool:

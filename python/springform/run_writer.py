@@ -31,6 +31,7 @@ from .run_format import (
     GenerationLine,
     RunSettings,
     file_hash,
+    generation_line,
     is_run,
     journal_text,
     parts_of,
@@ -57,16 +58,9 @@ class RunWriter:
             "generation": np.full(count, generation, dtype=np.uint32),
             "individual": np.arange(count, dtype=np.uint32),
         }
-        line = GenerationLine(
-            generation=generation,
-            parent=result["winner"],
-            springs=parent["springs"],
-            force_differential=parent["force_differential"],
-            suf=result["suf"],
-            strategy=result["strategy"],
-            edits=result["edits"],
+        self._waiting.append(
+            (place | result["columns"], generation_line(generation, result, parent))
         )
-        self._waiting.append((place | result["columns"], line))
 
     def checkpoint(self) -> None:
         """Write what was added. Raises `WriteError`: nothing of it counts as written then."""

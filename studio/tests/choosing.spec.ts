@@ -10,7 +10,16 @@ import { motionOf } from "../src/document/motion";
 import { applyNet } from "../src/document/net";
 import { decodeFrame } from "../src/protocol/frames";
 import type { Compared } from "../src/protocol/messages";
-import { accessible, converged, documentOf, expect, revisit, startStudio, test } from "./studio";
+import {
+  accessible,
+  converged,
+  documentId,
+  documentOf,
+  expect,
+  revisit,
+  startStudio,
+  test,
+} from "./studio";
 
 const BIN = join(import.meta.dirname, "../../.venv/bin");
 
@@ -22,8 +31,8 @@ function evolved(folder: string, ...words: string[]): string {
 
 /** A net of the document as the engine has it: a hash of all of it, and where its nodes are. */
 async function netOf(page: Page, side: string): Promise<{ hash: string; positions: Float32Array }> {
-  const { hash, origin, search } = new URL(page.url());
-  const path = `${origin}/api/documents/${hash.slice(1)}/net/${side}${search}`;
+  const { origin, search } = new URL(page.url());
+  const path = `${origin}/api/documents/${documentId(page)}/net/${side}${search}`;
   const body = await (await page.request.get(path)).body();
   const buffer = new Uint8Array(body).buffer;
   const length = new DataView(buffer).getUint32(0, true);
@@ -268,9 +277,9 @@ test("two nets are compared side by side under one eye", async ({ page, open, ho
   const table = page.getByRole("table", { name: "Figures" });
   await expect(table).toBeVisible();
 
-  const { hash, origin, search } = new URL(page.url());
+  const { origin, search } = new URL(page.url());
   const response = await page.request.post(
-    `${origin}/api/documents/${hash.slice(1)}/compare${search}`,
+    `${origin}/api/documents/${documentId(page)}/compare${search}`,
     { data: { first: sides[0], second: sides[1] } },
   );
   const { first, second } = (await response.json()) as Compared;
@@ -336,4 +345,85 @@ test("two nets are compared side by side under one eye", async ({ page, open, ho
     1,
   );
   await accessible(page);
+});
+
+test("a comparison survives a reload and a restart, while its run is the one that is shown", async ({
+  page,
+  open,
+  home,
+}) => {
+  const words = ["--population", "12", "--generations", "4", "--insertions", "2"];
+  const studio = await open(evolved(join(home, "run"), "one-cylinder", ...words));
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.keyboard.press("u");
+  const cells = page.locator(".gallery .gallery-cell");
+  await cells.nth(0).click({ modifiers: ["Shift"] });
+  await cells.nth(9).click({ modifiers: ["Shift"] });
+  await page.keyboard.press("Shift+P");
+  const figures = page.getByRole("table", { name: "Figures" });
+  await expect(figures).toBeVisible();
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("s");
+  const told = async () => {
+    await expect(figures).toBeVisible();
+    const chosen = page.getByRole("combobox", { name: /^Net [AB]$/ });
+    const sides = await chosen.evaluateAll((all) =>
+      all.map((one) => (one as HTMLSelectElement).value),
+    );
+    return { sides, figures: await figures.textContent() };
+  };
+  const before = await told();
+  await page.reload();
+  expect(await told()).toEqual(before);
+  const { port, hash } = new URL(page.url());
+  await studio.kill();
+  const again = await startStudio(home, undefined, Number(port));
+  await revisit(page, again, hash);
+  expect(await told()).toEqual(before);
+  // Closed stays closed.
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Escape");
+  await expect(figures).toBeHidden();
+  await page.reload();
+  await converged(page);
+  await expect(figures).toBeHidden();
+  expect(new URL(page.url()).hash).toBe(`#${documentId(page)}`);
+  // Individuals of another run by the same numbers are others.
+  await page.evaluate((to) => location.assign(to), hash.replace("run=", "run=other"));
+  await expect(
+    page.getByText("the individuals that were compared are of another run"),
+  ).toBeVisible();
+  await expect(figures).toBeHidden();
+  await again.kill();
+});
+
+test("a pin is renamed by mouse and by keys, and stays so", async ({ page, visit }) => {
+  await visit("one-cylinder");
+  await page.keyboard.press("p");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  const pin = page.getByRole("list", { name: "Pinned nets" }).getByRole("listitem");
+  const field = page.getByRole("textbox", { name: "Name of the pin" });
+  await page.getByRole("button", { name: "Rename Design at the start" }).click();
+  await expect(field).toBeFocused();
+  await page.keyboard.type("Bare hall");
+  await page.locator(".panel-evolve h2").first().click();
+  await expect(pin).toContainText("Bare hall");
+  // Tab leads to its picture; what is typed then is a name, not a command.
+  await page.getByRole("button", { name: "Look at Bare hall" }).focus();
+  await page.keyboard.press("F2");
+  await page.keyboard.type("Ship");
+  await page.keyboard.press("Enter");
+  await expect(pin).toContainText("Ship");
+  await expect(page.getByRole("button", { name: "Look at Ship" })).toBeFocused();
+  await page.keyboard.press("F2");
+  await page.keyboard.type("Nothing");
+  await page.keyboard.press("Escape");
+  await expect(field).toBeHidden();
+  await accessible(page);
+  await page.reload();
+  await converged(page);
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await expect(pin).toContainText("Ship");
+  expect((await documentOf(page)).position).toBe(0);
+  expect((await documentOf(page)).looking).toBeNull();
 });

@@ -95,13 +95,26 @@ test("what is exported is what is seen, and others can read it", async ({ page, 
   const canvas = page.locator("main.viewport canvas");
   const box = (await canvas.boundingBox())!;
   const picture = PNG.sync.read(await download(page, "Export a picture (PNG)"));
-  expect([picture.width, picture.height]).toEqual([Math.round(box.width), Math.round(box.height)]);
+  // Twice as fine as the screen.
+  expect([picture.width, picture.height]).toEqual([
+    2 * Math.round(box.width),
+    2 * Math.round(box.height),
+  ]);
   const pixels = new Uint32Array(
     picture.data.buffer,
     picture.data.byteOffset,
     picture.data.length / 4,
   );
   expect(new Set(pixels).size).toBeGreaterThan(300);
+  // With the scale of the legend, from one end of the palette to the other, where the drawing has it.
+  const bar = Array.from({ length: 200 }, (_, at) => {
+    const [x, y] = [2 * 25 + 2 * at, picture.height - 2 * 57];
+    return pixels[y * picture.width + x];
+  });
+  expect(new Set(bar).size).toBeGreaterThan(100);
+  // The canvas is as fine as before.
+  const fineness = await canvas.evaluate((element: HTMLCanvasElement) => element.width);
+  expect(fineness).toBe(Math.round(box.width));
 
   const drawing = (await download(page, "Export a drawing (SVG)")).toString();
   const parsed = await page.evaluate((text) => {
@@ -125,6 +138,14 @@ test("what is exported is what is seen, and others can read it", async ({ page, 
   expect(parsed.springs).toBe(figures.springs);
   expect(parsed.within).toBe(figures.springs);
   expect(parsed.names).toEqual(anchors.map(({ name }) => name));
+
+  // Kinds are explained one by one.
+  await page.getByLabel("Colour springs by").selectOption("level");
+  const kinds = page.locator(".kind-list > *");
+  const named = (await download(page, "Export a drawing (SVG)")).toString();
+  const legend = named.slice(named.indexOf('id="legend"'));
+  expect(legend.match(/<rect/g)).toHaveLength(await kinds.count());
+  expect(await kinds.count()).toBeGreaterThan(1);
 
   for (const [item, ending] of [
     [/TOML/, "toml"],

@@ -138,13 +138,13 @@ test("a killed studio takes the evolution up where it stood", async ({ page, ope
   await revisit(page, again, hash);
   const banner = page.locator(".looking.live");
   await expect(banner).toContainText("taken up as it stood when the studio ended");
-  // It is on the disk every second; what is missing grows again.
+  // Nothing that was seen is missing.
   const taken = await generation(page);
-  expect(taken).toBeGreaterThan(0);
+  expect(taken).toBeGreaterThanOrEqual(before);
   await page.getByRole("tab", { name: "Evolve" }).click();
   await expect(page.locator(".brushes")).toContainText("1 brushed");
   await banner.getByRole("button", { name: "Continue" }).click();
-  await expect.poll(() => generation(page)).toBeGreaterThan(Math.max(before, taken) + 3);
+  await expect.poll(() => generation(page)).toBeGreaterThan(taken + 3);
   await banner.getByRole("button", { name: "Keep" }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
   await expect(banner).toHaveCount(0);

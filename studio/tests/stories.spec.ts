@@ -3,6 +3,7 @@ import type { Page } from "@playwright/test";
 import { pictureOf, STRONGEST } from "./picture";
 import {
   anchorPlace,
+  cellAbove,
   clickCellAbove,
   converged,
   documentOf,
@@ -234,4 +235,58 @@ test("undo and redo are done however fast they are asked for", async ({ page, vi
   await converged(page);
   const { position, figures } = await documentOf(page);
   expect([position, figures.springs]).toEqual([1, done]);
+});
+
+test("keys pressed quickly one after the other find what those before them did", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const error = page.locator('[data-sonner-toast][data-type="error"]');
+  await clickCellAbove(page, await anchorPlace(page, "A4"));
+  await expect(page.getByRole("heading", { name: /^Cell \d+$/ })).toBeVisible();
+  // The page still shows the whole cell when the second one is pressed.
+  for (const _ of [1, 2]) await page.keyboard.press("s");
+  await expect(page.getByRole("heading", { name: "16 cells" })).toBeVisible();
+  expect((await documentOf(page)).position).toBe(2);
+  for (const key of ["m", "Control+z"]) await page.keyboard.press(key);
+  await expect.poll(async () => (await documentOf(page)).length).toBe(3);
+  await expect.poll(async () => (await documentOf(page)).position).toBe(2);
+  // A spring can be cut once.
+  await page.keyboard.press("Control+k");
+  await page.keyboard.type("select the spring with the largest force");
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("heading", { name: "Spring", exact: true })).toBeVisible();
+  for (const _ of [1, 2]) await page.keyboard.press("Delete");
+  await expect(page.getByText("select one spring first")).toBeVisible();
+  expect((await documentOf(page)).history.at(-1)!.label).toBe("Cut a spring");
+  // What turns something on and off does so.
+  for (const _ of [1, 2, 3]) await page.keyboard.press("p");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await expect(page.getByRole("list", { name: "Pinned nets" }).getByRole("listitem")).toHaveCount(
+    1,
+  );
+  await page.locator("main.viewport canvas").focus();
+  for (const _ of [1, 2]) await page.keyboard.press("l");
+  await expect(page.locator(".looking.live")).toContainText("paused");
+  await page.getByRole("button", { name: "Discard" }).dblclick();
+  await expect(page.locator(".looking.live")).toBeHidden();
+  await expect(error).toHaveCount(0);
+});
+
+test("a second stroke of the brush leaves alone what the first one divided", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const cell = await cellAbove(page, await anchorPlace(page, "A4"));
+  await page.keyboard.press("b");
+  for (const _ of [1, 2, 3]) {
+    await page.mouse.move(cell.x + 1, cell.y);
+    await page.mouse.down();
+    await page.mouse.up();
+  }
+  await expect.poll(async () => (await documentOf(page)).position).toBeGreaterThan(0);
+  await converged(page);
+  await expect(page.locator('[data-sonner-toast][data-type="error"]')).toHaveCount(0);
 });

@@ -68,10 +68,15 @@ export async function revisit(page: Page, studio: Studio, hash: string): Promise
   await page.reload();
 }
 
+/** Id of the document that a page shows. */
+export function documentId(page: Page): string {
+  return new URL(page.url()).hash.slice(1).split("?")[0];
+}
+
 /** The document as the engine holds it. */
 export async function documentOf(page: Page): Promise<DocumentState> {
-  const { hash, origin, search } = new URL(page.url());
-  const response = await page.request.get(`${origin}/api/documents/${hash.slice(1)}${search}`);
+  const { origin, search } = new URL(page.url());
+  const response = await page.request.get(`${origin}/api/documents/${documentId(page)}${search}`);
   expect(response.status()).toBe(200);
   return (await response.json()) as DocumentState;
 }

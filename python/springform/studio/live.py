@@ -17,10 +17,11 @@ from ..errors import InputError, SpringformError
 from ..files import WriteError
 from ..network import Equilibrium
 from ..parameters import Parameters, checked_parameters
-from ..run import start_evolution
+from ..run import STRATEGY, start_evolution
+from ..run_format import GenerationLine, generation_line
 from .evolving import ENDINGS
 from .frames import Tables, tables_of
-from .live_file import Point, Standing, design_data
+from .live_file import Point, Standing, design_data, point_of
 
 Status = Literal["running", "paused", "failed"]
 
@@ -49,8 +50,7 @@ _REMEMBERED = 400
 """Generations of which windows are told."""
 
 _CHECKPOINT = 1.0
-"""Longest time that a running evolution is not on the disk [s]; what it makes meanwhile it would
-make again."""
+"""Longest time that generations are kept as lines, before the net is kept as a whole [s]."""
 
 _GOALS = frozenset({"until_springs", "until_differential", "until_suf"})
 
@@ -77,12 +77,13 @@ class Live:
         parameters: Mapping[str, Any],
         tell: Callable[[], None],
         keep: Callable[[Standing], None],
+        add: Callable[[GenerationLine], None],
         standing: Standing | None = None,
     ):
         """Begin at once, or take up where it stood and wait for `go_on`.
 
-        In the thread `tell` is called after every generation, and `keep` whenever the evolution is
-        to be put on the disk.
+        In the thread `tell` is called after every generation. Before, the generation is put on the
+        disk: by `add` as what changed, or by `keep` with all that there is.
         Raises `InputError`: a parameter that is not allowed, or a design that gives no net.
         """
         design = design.closed
@@ -93,13 +94,17 @@ class Live:
         self.points: deque[Point] = deque(standing.points if standing else (), maxlen=_REMEMBERED)
         self._tell = tell
         self._keep = keep
+        self._add = add
         self._changed = threading.Condition()
         self._moved: dict[str, tuple[float, float, float]] = {}
         self._wanted: dict[str, Any] = {}
         self._closed = False
         self._times: deque[float] = deque(maxlen=_COUNTED + 1)
-        resumed = None if standing is None else (standing.generation, standing.start, None)
-        self._evolution = self._begun(design, resumed)
+        self._strategy = None if standing is None else standing.strategy
+        self._suf = None if standing is None else standing.suf
+        self._evolution = self._begun(
+            design, None if standing is None else (standing.generation, standing.start)
+        )
         self._reached = standing is not None and self._goal() is not None
         self._grown = _grown(design)
         self._kept_at = float("-inf")
@@ -200,26 +205,45 @@ class Live:
         if not (running or moved or wanted):
             self._checkpoint()
             return True
-        design = self._grown.design
-        if _GOALS & set(wanted):
-            self._reached = False
-        if moved:
-            design = with_anchors(design, moved)
-        if moved or wanted:
-            before = self._evolution
-            self._evolution = self._begun(design, (before.generation, before.start, None))
+        design, line = self._grown.design, None
+        changed = bool(moved or wanted)
+        if changed:
+            design = self._begin_anew(design, moved, wanted)
         if running:
             result = self._evolution.advance()
             design = design.edited(result["edits"])
+            line = generation_line(self._evolution.generation, result, self._evolution.measures)
+            self._strategy, self._suf = line.strategy, line.suf
+        whole = changed or began > self._kept_at + _CHECKPOINT
+        if line is not None and not whole:
+            self._add(line)  # first, so that nobody sees what a kill would take away
         self._grown, self._unkept = _grown(design), True
-        if running:
-            self._note(self._evolution)
+        if line is not None:
+            self.points.append(point_of(line))
+            self._times.append(time.monotonic())
             self._pause_at_goal()
-        if moved or wanted or began > self._kept_at + _CHECKPOINT:
+        if whole:
             self._checkpoint()
         if running:
             self._rest(began + _SHORTEST)
         return True
+
+    def _begin_anew(
+        self, design: Design, moved: Mapping[str, Any], wanted: Mapping[str, Any]
+    ) -> Design:
+        """Go on with other anchors and parameters; return the parent as it is held then."""
+        if _GOALS & set(wanted):
+            self._reached = False
+        if moved:
+            design = with_anchors(design, moved)
+        # What was measured otherwise, or adapted from what is not wanted now, is not the parent's.
+        if moved or "suf_reference" in wanted:
+            self._suf = None
+        if (STRATEGY | {"self_adapt"}) & set(wanted):
+            self._strategy = None
+        before = self._evolution
+        self._evolution = self._begun(design, (before.generation, before.start))
+        return design
 
     def _has_work(self) -> bool:
         if self._closed or self.status == "failed":
@@ -249,6 +273,8 @@ class Live:
             start=evolution.start,
             points=list(self.points),
             design=design_data(self._grown.design),
+            strategy=self._strategy,
+            suf=self._suf,
         )
         self._keep(standing)
         self._unkept, self._kept_at = False, time.monotonic()
@@ -257,21 +283,18 @@ class Live:
         with self._changed:
             self._changed.wait_for(lambda: self._closed, max(0.0, until - time.monotonic()))
 
-    def _note(self, evolution: _core.Evolution) -> None:
-        standing = evolution.measures
-        point = Point(
-            generation=evolution.generation,
-            springs=standing["springs"],
-            force_differential=standing["force_differential"],
+    def _begun(
+        self, design: Design, stood: tuple[int, tuple[int, float | None]] | None
+    ) -> _core.Evolution:
+        """Return the algorithm at a design, counting on from a generation and a start."""
+        return start_evolution(
+            design,
+            self.parameters,
+            # One thread is left to the windows.
+            threads=max(1, (os.cpu_count() or 2) - 1),
+            strategy=self._strategy,
+            resumed=None if stood is None else (*stood, self._suf),
         )
-        self.points.append(point)
-        self._times.append(time.monotonic())
-
-    def _begun(self, design: Design, resumed: Any) -> _core.Evolution:
-        """Return the algorithm at a design, counting on from where it was."""
-        # One thread is left to the windows.
-        threads = max(1, (os.cpu_count() or 2) - 1)
-        return start_evolution(design, self.parameters, threads=threads, resumed=resumed)
 
     def _checked(self, values: Mapping[str, Any]) -> Parameters:
         return checked_parameters(values, self._method)

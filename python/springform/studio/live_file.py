@@ -2,9 +2,10 @@
 
     FOLDER/live.json    parameters that were changed, and factors of cells that were brushed
     FOLDER/grown.json   the net that evolves and where it stands; only while there is one
+    FOLDER/grown.jsonl  every generation since, a line each, as in a run's journal
     FOLDER/discarded.json   the one that was discarded last
 
-Evolution is a function of the two: what a killed studio had grown since it last wrote grows again
+Evolution is a function of these: a generation that a killed studio had not finished is made again
 the same way.
 """
 
@@ -19,11 +20,13 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .. import design_file
 from ..design import Design
-from ..errors import InputError
-from ..files import read_text, write_atomically
+from ..errors import DesignError, InputError
+from ..files import WriteError, explain, read_text, write_atomically
+from ..run_format import GenerationLine, Strategy
 
 _SETTINGS = "live.json"
 _NET = "grown.json"
+_LINES = "grown.jsonl"
 _DISCARDED = "discarded.json"
 
 
@@ -63,6 +66,10 @@ class Standing(_Record):
     """Of the last generations."""
     design: dict[str, Any]
     """The parent, as a design file."""
+    strategy: Strategy | None = None
+    """Numbers of mutations and weighting of the parent; None: those of the parameters."""
+    suf: float | None = None
+    """Spring utilization factor of the parent, where it was measured."""
 
     def grown(self) -> Design:
         """Return the parent. Raises `DesignError`: it is no design."""
@@ -70,6 +77,15 @@ class Standing(_Record):
 
 
 _R = TypeVar("_R", bound=_Record)
+
+
+def point_of(line: GenerationLine) -> Point:
+    """Return what windows are told of a generation."""
+    return Point(
+        generation=line.generation,
+        springs=line.springs,
+        force_differential=line.force_differential,
+    )
 
 
 def design_data(design: Design) -> dict[str, Any]:
@@ -84,8 +100,15 @@ def read_settings(folder: Path) -> LiveSettings:
 
 
 def read_standing(folder: Path) -> Standing | None:
-    """Return the net that evolved; None: there is none. Raises `InputError`: it is damaged."""
-    return _read(folder / _NET, Standing)
+    """Return the net that evolved, as it was last seen; None: there is none.
+
+    Raises `InputError`: it is damaged.
+    """
+    standing = _read(folder / _NET, Standing)
+    if standing is None:
+        return None
+    lines = _lines_after(folder / _LINES, standing.generation)
+    return _advanced(standing, lines, folder) if lines else standing
 
 
 def write_settings(folder: Path, settings: LiveSettings) -> None:
@@ -96,11 +119,24 @@ def write_settings(folder: Path, settings: LiveSettings) -> None:
 def write_standing(folder: Path, standing: Standing) -> None:
     """Keep the net that evolves. Raises `WriteError`."""
     write_atomically(folder / _NET, _json(standing))
+    # Lines that a kill leaves here are older than the net, and don't count.
+    (folder / _LINES).unlink(missing_ok=True)
+
+
+def add_generation(folder: Path, line: GenerationLine) -> None:
+    """Keep a generation after the net that was written last. Raises `WriteError`."""
+    try:
+        with open(folder / _LINES, "ab") as file:
+            # A line that a kill cut short must not swallow this one.
+            file.write(b"\n" + line.model_dump_json().encode())
+    except OSError as error:
+        raise WriteError(f"can't be written: {explain(error)}", file=folder / _LINES) from None
 
 
 def forget_standing(folder: Path) -> None:
     """Remove the net that evolved, which was kept."""
-    (folder / _NET).unlink(missing_ok=True)
+    for name in (_NET, _LINES):
+        (folder / name).unlink(missing_ok=True)
 
 
 def discard_standing(folder: Path) -> None:
@@ -130,6 +166,40 @@ def _read(path: Path, kind: type[_R]) -> _R | None:
     except ValidationError:
         problem = "is no record of live evolution of this version; delete it to go on without"
         raise InputError(problem, file=path) from None
+
+
+def _lines_after(path: Path, generation: int) -> list[GenerationLine]:
+    """Return the generations that follow one, without gaps; others were cut short, or are older."""
+    if not path.exists():
+        return []
+    lines: list[GenerationLine] = []
+    for text in read_text(path).split("\n"):
+        try:
+            line = GenerationLine.model_validate_json(text)
+        except ValidationError:
+            continue
+        if line.generation == generation + len(lines) + 1:
+            lines.append(line)
+    return lines
+
+
+def _advanced(standing: Standing, lines: list[GenerationLine], folder: Path) -> Standing:
+    try:
+        design = standing.grown()
+        for line in lines:
+            design = design.edited(line.edits)
+    except DesignError:
+        problem = "does not fit the net that it grew from; delete it to go on without"
+        raise InputError(problem, file=folder / _LINES) from None
+    return standing.model_copy(
+        update={
+            "generation": lines[-1].generation,
+            "points": [*standing.points, *map(point_of, lines)],
+            "design": design_data(design),
+            "strategy": lines[-1].strategy,
+            "suf": lines[-1].suf,
+        }
+    )
 
 
 def _json(record: _Record) -> bytes:

@@ -11,6 +11,7 @@ from ..design import Design
 from ..errors import InputError
 from ..parameters import checked_parameters
 from ..run import start_evolution
+from ..run_format import GenerationLine
 from . import live_file
 from .live import DEFAULTS, Grown, Live
 from .live_messages import LiveEvolve, LivePoint, LiveState, WeighCells
@@ -160,6 +161,7 @@ class LiveStage:
         if parameters:
             await self._change(parameters)
         self.live = await asyncio.to_thread(self._begun, self._design(), None)
+        self._tell(self.state())
         self._grew()
 
     async def _restore(self) -> None:
@@ -175,7 +177,10 @@ class LiveStage:
         def keep(now: live_file.Standing) -> None:
             live_file.write_standing(self._folder, now)
 
-        return Live(design, values, self._grew, keep, standing)
+        def add(line: GenerationLine) -> None:
+            live_file.add_generation(self._folder, line)
+
+        return Live(design, values, self._grew, keep, add, standing)
 
     async def _change(self, parameters: dict[str, Any]) -> None:
         """Take other parameters, whether something evolves or not; refused ones change nothing."""

@@ -34,7 +34,7 @@ from .graft_messages import (
 from .live_messages import LiveEvolve, LiveState, WeighCells
 from .message_base import Address, Key, Vector
 from .message_base import Message as _Message
-from .pin_messages import Compared, Comparing, Pin, Pins, Unpin
+from .pin_messages import Compared, Comparing, Pin, Pins, RenamePin, Unpin
 from .run_messages import (
     Brushes,
     Clusters,
@@ -227,6 +227,7 @@ Request = Annotated[
     | Reinstate
     | Pin
     | Unpin
+    | RenamePin
     | LiveEvolve
     | WeighCells
     | SelectCells

@@ -35,12 +35,21 @@ class Unpin(Message):
     pin: int
 
 
+class RenamePin(Message):
+    """Call a pinned net something else."""
+
+    type: Literal["rename_pin"] = "rename_pin"
+    id: int
+    pin: int
+    label: Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
+
+
 class PinState(Message):
     """A pinned net."""
 
     number: int
     label: str
-    """Such as ``Generation 34, individual 2``."""
+    """What it is called: such as ``Generation 34, individual 2``, until somebody renames it."""
     place: Place | None
     """None: it was the design, after actions of its own."""
     suf: float | None

@@ -19,8 +19,11 @@ from .pin_messages import (
     ComparedNet,
     ComparedReaction,
     Comparing,
+    Pin,
     Pins,
+    RenamePin,
     Side,
+    Unpin,
 )
 from .pins import PinFolder
 from .run_messages import Look, Looked
@@ -87,22 +90,18 @@ class PinStage:
         looked = Looked(label=net.label, generation=generation, individual=individual, pin=pin)
         return Looking(looked, net, figures_of(net.design))
 
-    def pin(self, side: Side | None, shown: Looking | None) -> None:
-        """Pin a net, or what is shown. Raises `InputError`: there is no such, or it is pinned."""
-        if side is None and shown is not None:
-            net, figures = shown.net, shown.figures
-        else:
-            net = self.net(side or "design")
-            figures = figures_of(net.design)
-        place = net.place
-        if place is None:
-            count = self._document.position
-            label = f"Design after {count} actions" if count else "Design at the start"
-            label = "Design after 1 action" if count == 1 else label
-        else:
-            label = place.label
-        suf = None if place is None else self._runs.suf(place)
-        self.folder.keep(net.design, label, place, suf, figures)
+    def change(self, request: Pin | Unpin | RenamePin, shown: Looking | None) -> None:
+        """Do what a window asks; `shown` is what it shows instead of the design.
+
+        Raises `InputError`: there is no such net or pin, or it is pinned.
+        """
+        match request:
+            case Pin():
+                self._pin(request.side, shown)
+            case Unpin():
+                self.folder.drop(request.pin)
+            case RenamePin():
+                self.folder.rename(request.pin, request.label)
 
     def picture(self, side: Side) -> bytes:
         """Return a net at equilibrium, as a frame of its net and one of its motion."""
@@ -143,6 +142,22 @@ class PinStage:
                 for name in names
             ],
         )
+
+    def _pin(self, side: Side | None, shown: Looking | None) -> None:
+        if side is None and shown is not None:
+            net, figures = shown.net, shown.figures
+        else:
+            net = self.net(side or "design")
+            figures = figures_of(net.design)
+        place = net.place
+        if place is None:
+            count = self._document.position
+            label = f"Design after {count} actions" if count else "Design at the start"
+            label = "Design after 1 action" if count == 1 else label
+        else:
+            label = place.label
+        suf = None if place is None else self._runs.suf(place)
+        self.folder.keep(net.design, label, place, suf, figures)
 
     def _of_run(self, generation: int, individual: int | None) -> Net:
         run = self._runs.known()

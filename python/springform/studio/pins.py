@@ -98,6 +98,14 @@ class PinFolder:
         with contextlib.suppress(OSError):  # it is in no list any more
             self._path(number).unlink()
 
+    def rename(self, number: int, label: str) -> None:
+        """Call a pin something else. Raises `InputError`: there is none, or it can't be written."""
+        renamed = self.pin(number)
+        pins = [
+            pin.model_copy(update={"label": label}) if pin is renamed else pin for pin in self.pins
+        ]
+        self._write(self._kept.model_copy(update={"pins": pins}))
+
     def _is(self, pin: PinState, design: Design, place: Place | None, figures: Figures) -> bool:
         """Whether a net is the pinned one."""
         if place is not None or pin.place is not None:

@@ -59,7 +59,7 @@ from .messages import (
 )
 from .motion import Motion, State, carried
 from .patches import PatchFolder
-from .pin_messages import Pin, Unpin
+from .pin_messages import Pin, RenamePin, Unpin
 from .pin_stage import Looking, PinStage
 from .preview import preview_of
 from .run_messages import (
@@ -230,9 +230,9 @@ class Session:
             case ListPatches() | CopyPatch() | RenamePatch() | DeletePatch():
                 async with self._order:
                     await self._file_patch(request)
-            case Pin() | Unpin():
+            case Pin() | Unpin() | RenamePin():
                 async with self._order:
-                    await self._in_thread(lambda: self._pin(request))
+                    await self._in_thread(lambda: self.pins.change(request, self._looking))
                     self._tell_all(self.pins.state())
             case _:
                 async with self._order:
@@ -490,18 +490,12 @@ class Session:
             self._looking = await self._in_thread(lambda: self.pins.looking(request))
         self._take_design()
 
-    def _pin(self, request: Pin | Unpin) -> None:
-        if isinstance(request, Pin):
-            self.pins.pin(request.side, self._looking)
-        else:
-            self.pins.folder.drop(request.pin)
-
     async def _reinstate(self) -> None:
         if self._looking is None:
             raise InputError("look at an individual first")
         net = self._looking.net
-        label = net.label if net.place is None else net.place.label
-        label = f"Take over {label[0].lower()}{label[1:]}"
+        # Without a place it is a pin, which may have a name of somebody's own.
+        label = f"Take over {net.label if net.place is None else net.place.label.lower()}"
         self._looking, self.runs.following = None, False
         await self.act(
             lambda: (commands.whole(self.design, net.design, label, net.place), []),

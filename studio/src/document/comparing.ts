@@ -1,6 +1,6 @@
 // Two nets side by side: which, their nets and figures as the engine tells them, and the scale that they share.
 import { createStore } from "zustand/vanilla";
-import { documentInAddress } from "../protocol/address";
+import { comparedInAddress, documentInAddress, putComparedInAddress } from "../protocol/address";
 import { fetchCompared } from "../protocol/fetching";
 import type { Compared } from "../protocol/messages";
 import type { ColourChoice } from "./colouring";
@@ -14,12 +14,14 @@ import { notify, select, store } from "./store";
 export interface Comparison {
   /** The net at the left and the one at the right; null: nothing is compared. */
   sides: [Side, Side] | null;
+  /** Name of the run that individuals are of. */
+  run: string;
   /** What was fetched of them; null until it is there. */
   nets: [Pictured | null, Pictured | null];
   table: Compared | null;
 }
 
-const NONE: Comparison = { sides: null, nets: [null, null], table: null };
+const NONE: Comparison = { sides: null, run: "", nets: [null, null], table: null };
 
 export const comparing = createStore<Comparison>()(() => NONE);
 
@@ -91,7 +93,8 @@ async function take(sides: [Side, Side]): Promise<void> {
   const id = documentInAddress();
   // What is there stays until what comes in its place has come.
   const kept = (at: 0 | 1) => (before.sides?.[at] === sides[at] ? before.nets[at] : null);
-  comparing.setState({ sides, nets: [kept(0), kept(1)], table: null });
+  const run = store.getState().run?.state.name ?? "";
+  comparing.setState({ sides, run, nets: [kept(0), kept(1)], table: null });
   try {
     const [first, second, table] = await Promise.all([
       pictureAt(pathOfSide(id, sides[0])),
@@ -112,6 +115,35 @@ async function take(sides: [Side, Side]): Promise<void> {
     stopComparing();
   }
 }
+
+/** Compares what the address says; individuals only of the run that it names, which is another one after a restart. */
+export function compareAsInAddress(): void {
+  const said = comparedInAddress();
+  const { run } = store.getState();
+  if (!said) {
+    stopComparing();
+    return;
+  }
+  const individuals = said.sides.some((side) => side.startsWith("run/"));
+  if (individuals && said.run !== run?.state.name) {
+    putComparedInAddress(null);
+    notify("the individuals that were compared are of another run; show it first");
+    return;
+  }
+  const now = comparing.getState().sides;
+  if (`${now}` !== `${said.sides}`) compare(...said.sides);
+}
+
+comparing.subscribe(({ sides, run }, before) => {
+  // While a document is opened, the address says what is to be compared in it.
+  if (sides !== before.sides && store.getState().document)
+    putComparedInAddress(sides && { sides, run });
+});
+
+store.subscribe(({ run }, before) => {
+  // By then the document is known; what is pinned comes at once.
+  if (run && !before.run) compareAsInAddress();
+});
 
 store.subscribe(({ document }, before) => {
   const { sides } = comparing.getState();

@@ -2,6 +2,7 @@
 import type { Comparing, DocumentState, PinState } from "../protocol/messages";
 import { type Individuals, placeOf, type Run } from "./run";
 import { ask, type State, store } from "./store";
+import { inTurn } from "./turns";
 
 /** A net that can be looked at, pinned and compared. */
 export type Side = Comparing["first"];
@@ -89,9 +90,16 @@ export function labelOfSide(pins: PinState[], side: Side): string {
 
 /** Pins a net, or lets it go. */
 export function togglePin(side: Side): void {
-  const pin = pinOfSide(store.getState(), side);
-  if (pin) ask({ type: "unpin", pin: pin.number }, "Letting go");
-  else ask({ type: "pin", side }, "Pinning");
+  inTurn(() => {
+    const pin = pinOfSide(store.getState(), side);
+    if (pin) ask({ type: "unpin", pin: pin.number }, "Letting go");
+    else if (!side.startsWith("pin/")) ask({ type: "pin", side }, "Pinning");
+  });
+}
+
+/** Calls a pin something else. */
+export function renamePin(pin: PinState, label: string): void {
+  if (label !== pin.label) ask({ type: "rename_pin", pin: pin.number, label }, "Renaming");
 }
 
 /** Shows a net. */

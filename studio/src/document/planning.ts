@@ -2,7 +2,7 @@
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
 import { grafting, type Place, putAway } from "./grafting";
 import { NOTHING } from "./selection";
-import { ask, askQuietly, notify, select, selecting, store } from "./store";
+import { ask, askQuietly, select, selecting, store } from "./store";
 
 /** Selects what words say, or a selection grown by some rings; not if something else was selected meanwhile. */
 export async function selectBy(
@@ -12,19 +12,11 @@ export async function selectBy(
   const { selection } = store.getState();
   const before = adding && selection.kind === "cells" ? selection.keys : [];
   const answer = selecting();
-  try {
-    const { cells } = await askQuietly({
-      type: "select_cells",
-      words: null,
-      cells: [],
-      grow: 0,
-      orbit: false,
-      ...request,
-    });
-    answer({ kind: "cells", keys: [...new Set([...before, ...cells])] });
-  } catch (error) {
-    notify((error as Error).message);
-  }
+  await ask(
+    { type: "select_cells", words: null, cells: [], grow: 0, orbit: false, ...request },
+    "Selecting",
+    ({ cells }) => answer({ kind: "cells", keys: [...new Set([...before, ...cells])] }),
+  );
 }
 
 /** Top-level cell of an address. */
@@ -70,13 +62,13 @@ export function anchorsAtSelection(): string[] {
 }
 
 export function listPatches(): void {
-  ask({ type: "list_patches" });
+  ask({ type: "list_patches" }, "Reading patches");
 }
 
 /** Reads which symmetries there are. */
 export async function readSymmetry(): Promise<void> {
   try {
-    const { answer } = await askQuietly({ type: "ask_symmetry" });
+    const { answer } = await askQuietly({ type: "ask_symmetry" }, "Looking for symmetries");
     grafting.setState({ symmetry: answer as SymmetryState });
   } catch {
     grafting.setState({ symmetry: null });
@@ -130,11 +122,10 @@ export async function plan(): Promise<void> {
   }
   asking = true;
   try {
-    const { answer } = await askQuietly({
-      type: "plan_graft",
-      measure: pinned || place === "anchors",
-      ...wanted,
-    });
+    const { answer } = await askQuietly(
+      { type: "plan_graft", measure: pinned || place === "anchors", ...wanted },
+      "Placing the patch",
+    );
     if (grafting.getState().chosen === wanted.patch)
       grafting.setState({ plan: answer as GraftPlan, problem: "" });
   } catch (error) {

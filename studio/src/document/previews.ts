@@ -18,7 +18,10 @@ export function foresee(label: string, action: Foreseen, wait = WAIT): void {
   setTimeout(async () => {
     if (own !== number) return;
     try {
-      const reply = await askQuietly({ type: "preview", action: { ...action, id: 0 } as Numbered });
+      const reply = await askQuietly(
+        { type: "preview", action: { ...action, id: 0 } as Numbered },
+        "Working out what it would do",
+      );
       if (own === number && reply.preview)
         store.setState({ preview: { label, state: reply.preview, problem: "" } });
     } catch (error) {

@@ -11,6 +11,7 @@ import type {
   Reply,
   RunState,
 } from "../protocol/messages";
+import { onWaits } from "../protocol/waits";
 import { type Brushes, SORT, type Sort } from "./choosing";
 import type { ColourChoice } from "./colouring";
 import { grafting } from "./grafting";
@@ -109,7 +110,9 @@ export interface State {
   brushAt: [number, number] | null;
   view: View;
   theme: Theme;
-  /** Label of what the engine is busy with; empty if it answers at once. */
+  /** Actions that are asked for and not answered, so that the document here may not be the engine's any more. */
+  awaited: number;
+  /** What is waited for; empty if everything comes at once. */
   busy: string;
   /** The last problem, for a toast. */
   notice: Notice | null;
@@ -169,6 +172,7 @@ export const store = createStore<State>()(() => ({
   brushType: "6",
   brushRadius: BRUSH_RADII[0],
   brushAt: null,
+  awaited: 0,
   busy: "",
   notice: null,
   ...keptView(),
@@ -201,7 +205,6 @@ export function openDocument(id: string): void {
     preview: null,
     selection: NOTHING,
     hover: null,
-    busy: "",
   };
   store.setState({ ...closed, line: id ? "connecting" : "closed", problem: "" });
   if (!id) return;
@@ -215,54 +218,54 @@ export function openDocument(id: string): void {
   });
 }
 
-const BUSY_AFTER = 200; // ms
+onWaits((busy) => store.setState({ busy }));
+
+/** What is asked for and not answered. */
+const asked = new Set<string>();
 
 /**
- * Asks the engine to do something; what it made is selected. Failures become a notice.
- * Resolves to the reply, or to null if it failed.
+ * Asks the engine to do something. Failures become a notice. What is asked for already is not asked for twice:
+ * somebody pressed a button twice. `take` is given the reply before anything else has its turn; by default it selects
+ * the cells that were made.
+ * Resolves to the reply, or to null if it failed or is on its way.
  */
-export async function ask(request: Asking, label = "Working"): Promise<Reply | null> {
-  const answer = selecting();
-  awaited += 1;
-  const reply = await busyWith(label, askQuietly(request));
-  awaited -= 1;
-  if (reply?.cells.length) answer({ kind: "cells", keys: reply.cells });
+export async function ask(
+  request: Asking,
+  label: string,
+  take = selectingMade(),
+): Promise<Reply | null> {
+  const words = JSON.stringify(request);
+  if (asked.has(words)) return null;
+  asked.add(words);
+  store.setState({ awaited: asked.size });
+  const reply = await orNotice(askQuietly(request, label));
+  asked.delete(words);
+  if (reply) take(reply);
+  store.setState({ awaited: asked.size });
   return reply;
 }
 
-let awaited = 0;
-
-/** Whether an answer is on its way, so that the document here may not be the engine's any more. */
-export function isAwaiting(): boolean {
-  return awaited > 0;
+function selectingMade(): (reply: Reply) => void {
+  const answer = selecting();
+  return ({ cells }) => {
+    if (cells.length) answer({ kind: "cells", keys: cells });
+  };
 }
 
-/** What is under way for so long that it is told. */
-const underWay = new Set<{ label: string }>();
-
-/** Tells what is under way while it is; failures become a notice. Resolves to null if it failed. */
-export async function busyWith<T>(label: string, work: Promise<T>): Promise<T | null> {
-  const own = { label };
-  const tellBusy = () => store.setState({ busy: [...underWay].at(-1)?.label ?? "" });
-  const timer = setTimeout(() => {
-    underWay.add(own);
-    tellBusy();
-  }, BUSY_AFTER);
+/** What comes of something; failures become a notice, and null. */
+export async function orNotice<T>(work: Promise<T>): Promise<T | null> {
   try {
     return await work;
   } catch (error) {
     notify((error as Error).message);
     return null;
-  } finally {
-    clearTimeout(timer);
-    if (underWay.delete(own)) tellBusy();
   }
 }
 
-/** Asks the engine something that nobody waits for; throws `Error` with its problem. */
-export async function askQuietly(request: Asking): Promise<Reply> {
+/** Asks the engine something and leaves it to the caller to say what is wrong; throws `Refused`. */
+export async function askQuietly(request: Asking, label: string): Promise<Reply> {
   if (!connection) throw new Error("no document is open");
-  return connection.ask(request);
+  return connection.ask(request, label);
 }
 
 /** Tells the engine something that it does not answer. */

@@ -3,7 +3,8 @@ import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { useCallback, useEffect, useMemo, useState } from "react";
 import { Toaster, toast } from "sonner";
-import { isAwaiting, openDocument, store } from "../document/store";
+import { compareAsInAddress } from "../document/comparing";
+import { openDocument, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { CompareOverlay, CompareTable, useIsComparing } from "./Compare";
 import { commandOfKey, type Dialogs } from "./commands";
@@ -15,6 +16,8 @@ import { Inspector } from "./Inspector";
 import { LiveBanner } from "./LivePanel";
 import { OutOfSight } from "./OutOfSight";
 import { type OpenDialog, Overlays } from "./Overlays";
+import { Busy } from "./parts";
+import { perform } from "./performing";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
 import { BrushCircle, ToolHelp, ToolRail } from "./ToolRail";
@@ -61,6 +64,9 @@ function Front() {
     <div className="front">
       <TopBar />
       <StartPage />
+      <footer className="front-busy">
+        <Busy />
+      </footer>
     </div>
   );
 }
@@ -132,7 +138,10 @@ function LineState() {
 function useDocumentInAddress(): string {
   const [id, setId] = useState(documentInAddress);
   useEffect(() => {
-    const follow = () => setId(documentInAddress());
+    const follow = () => {
+      setId(documentInAddress());
+      if (documentInAddress() === store.getState().document?.document) compareAsInAddress();
+    };
     addEventListener("hashchange", follow);
     return () => removeEventListener("hashchange", follow);
   }, []);
@@ -189,11 +198,7 @@ function useKeys(stage: Stage | null, dialogs: Dialogs, covered: boolean, workin
       // Space and Enter press a focused button; they are not meant for the net then.
       if ((event.key === " " || event.key === "Enter") && at?.closest("button, [role=tab]")) return;
       event.preventDefault();
-      const viewport = stage?.viewport ?? null;
-      const asks = command.mayBecomePossible && isAwaiting();
-      const refused = asks ? null : (command.refused?.(store.getState()) ?? null);
-      if (refused === null) command.run({ viewport, dialogs });
-      else toast.message(refused, { id: "refused" });
+      perform(command, { viewport: stage?.viewport ?? null, dialogs });
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);

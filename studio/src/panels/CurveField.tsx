@@ -2,7 +2,7 @@
 import { FileUp } from "lucide-react";
 import { useRef, useState } from "react";
 import { inDigits } from "../document/scale";
-import { busyWith } from "../document/store";
+import { orNotice } from "../document/store";
 import { fetchCurve } from "../protocol/fetching";
 import { Hint } from "./parts";
 
@@ -23,7 +23,7 @@ export function CurveField({
   const field = useRef<HTMLInputElement>(null);
   const load = async (file: File | undefined) => {
     if (!file) return;
-    const curve = await busyWith(`Reading ${file.name}`, fetchCurve(file));
+    const curve = await orNotice(fetchCurve(file));
     if (!curve) return;
     onText(
       curve.strains.map((strain, at) => `${plain(strain)}, ${plain(curve.forces[at])}`).join("\n"),

@@ -9,6 +9,7 @@ import { commandOf } from "./commands";
 import { useDialogs } from "./dialogs";
 import { MODELS } from "./exporting";
 import { Keys } from "./parts";
+import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
 const MOST_RECENT = 8;
@@ -77,7 +78,10 @@ function Item({ id }: { id: string }) {
   const viewport = useStage()?.viewport ?? null;
   const dialogs = useDialogs();
   return (
-    <DropdownMenu.Item className="menu-item" onSelect={() => command.run({ viewport, dialogs })}>
+    <DropdownMenu.Item
+      className="menu-item"
+      onSelect={() => perform(command, { viewport, dialogs })}
+    >
       {command.label}
       {command.keys && <Keys keys={command.keys} />}
     </DropdownMenu.Item>

@@ -46,7 +46,7 @@ export function FolderList({
           <ArrowUp />
         </button>
         <span>
-          <bdi>{folder?.path ?? "Loading …"}</bdi>
+          <bdi>{folder?.path ?? ""}</bdi>
         </span>
       </div>
       {problem && (

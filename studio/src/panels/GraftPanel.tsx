@@ -17,7 +17,7 @@ import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
 import { inDigits } from "../document/scale";
 import { toggleLock } from "./graftCommands";
-import { Choice, IconButton, Section } from "./parts";
+import { Choice, IconButton, NameField, Section } from "./parts";
 import { useStudio } from "./use";
 
 export function useGrafting<T>(what: (state: Grafting) => T): T {
@@ -134,7 +134,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
   const [naming, setNaming] = useState(false);
   const rename = (name: string) => {
     setNaming(false);
-    if (name && name !== patch.name) ask({ type: "rename_patch", patch: patch.name, name });
+    if (name !== patch.name) ask({ type: "rename_patch", patch: patch.name, name }, "Renaming");
   };
   const put = () => {
     if (chosen) store.setState({ tool: "pull" });
@@ -154,17 +154,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
       </button>
       <div className="patch-words">
         {naming ? (
-          <input
-            aria-label="New name"
-            defaultValue={patch.name}
-            // biome-ignore lint/a11y/noAutofocus: it was asked for by a click
-            autoFocus
-            onBlur={(event) => rename(event.target.value)}
-            onKeyDown={(event) => {
-              if (event.key === "Enter") event.currentTarget.blur();
-              if (event.key === "Escape") setNaming(false);
-            }}
-          />
+          <NameField label="New name" name={patch.name} most={60} onDone={rename} />
         ) : (
           <b className="patch-name">{patch.name}</b>
         )}
@@ -197,7 +187,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
             label={`Delete ${patch.name}`}
             side="left"
             className="icon-button small"
-            onClick={() => ask({ type: "delete_patch", patch: patch.name })}
+            onClick={() => ask({ type: "delete_patch", patch: patch.name }, "Deleting")}
           >
             <Trash2 />
           </IconButton>

@@ -82,7 +82,10 @@ function LiveParameters({ live }: { live: LiveState }) {
     let problem = "";
     try {
       const parameters = { [name]: valueSaid(name, text) };
-      await askQuietly({ type: "live_evolve", what: "change", parameters });
+      await askQuietly(
+        { type: "live_evolve", what: "change", parameters },
+        "Changing the parameters",
+      );
     } catch (error) {
       problem = (error as Refused).words;
     }
@@ -111,7 +114,10 @@ function LiveParameters({ live }: { live: LiveState }) {
           className="link"
           onClick={() => {
             setProblems({});
-            ask({ type: "live_evolve", what: "defaults", parameters: {} });
+            ask(
+              { type: "live_evolve", what: "defaults", parameters: {} },
+              "Changing the parameters",
+            );
           }}
         >
           Back to the defaults
@@ -191,7 +197,7 @@ function Brushes() {
           <button
             type="button"
             className="link"
-            onClick={() => ask({ type: "weigh_cells", cells: [], factor: null })}
+            onClick={() => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks")}
           >
             Clear marks
           </button>

@@ -4,6 +4,7 @@ import type { Net } from "../document/net";
 import { commandOf, retype } from "./commands";
 import { useDialogs } from "./dialogs";
 import { Keys } from "./parts";
+import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
 const ITEMS: Record<string, string[]> = {
@@ -68,7 +69,7 @@ function Item({ id }: { id: string }) {
     <ContextMenu.Item
       className="menu-item"
       disabled={refused !== null}
-      onSelect={() => command.run({ viewport, dialogs })}
+      onSelect={() => perform(command, { viewport, dialogs })}
     >
       {command.label}
       {command.keys && <Keys keys={command.keys} />}

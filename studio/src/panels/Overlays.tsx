@@ -7,7 +7,8 @@ import { COMMANDS, type Command, GROUPS } from "./commands";
 import { useDialogs } from "./dialogs";
 import { FolderList } from "./FolderList";
 import { KeySheet } from "./KeySheet";
-import { Keys } from "./parts";
+import { Busy, Keys } from "./parts";
+import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
 export type OpenDialog = "palette" | "keys" | "save" | null;
@@ -31,7 +32,7 @@ function CommandPalette({ onClose }: { onClose(): void }) {
   const dialogs = useDialogs();
   const run = (command: Command) => {
     onClose();
-    command.run({ viewport, dialogs });
+    perform(command, { viewport, dialogs });
   };
   return (
     <Dialog.Content className="dialog palette" aria-describedby={undefined}>
@@ -80,7 +81,7 @@ function SaveDialog({ onClose }: { onClose(): void }) {
   const save = async (event: FormEvent) => {
     event.preventDefault();
     try {
-      await askQuietly({ type: "save", path, replace });
+      await askQuietly({ type: "save", path, replace }, "Saving");
       onClose();
     } catch (error) {
       setProblem((error as Error).message);
@@ -116,6 +117,7 @@ function SaveDialog({ onClose }: { onClose(): void }) {
           </p>
         )}
         <div className="row end">
+          <Busy />
           <Dialog.Close className="button">Cancel</Dialog.Close>
           <button type="submit" className="button primary">
             Save

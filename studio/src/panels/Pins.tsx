@@ -1,21 +1,27 @@
 // What is pinned: a strip of nets with their figures, kept with the document.
-import { Columns2, Pin, PinOff } from "lucide-react";
+import { Columns2, Pencil, Pin, PinOff } from "lucide-react";
+import { useRef, useState } from "react";
 import { compareWith } from "../document/comparing";
 import {
+  labelOfSide,
   lookAt,
   pathOfSide,
   pinOfSide,
+  renamePin,
   type Side,
   shownSide,
+  sideOf,
   toggleMark,
   togglePin,
 } from "../document/pins";
 import { inDigits } from "../document/scale";
 import type { PinState } from "../protocol/messages";
 import { commandOf } from "./commands";
-import { Hint, IconButton, Section } from "./parts";
+import { Hint, IconButton, NameField, Section } from "./parts";
 import { Thumbnail } from "./Thumbnail";
 import { useStudio } from "./use";
+
+const RENAME_KEY = "F2";
 
 /** Pins what is shown, or lets it go. */
 function PinButton() {
@@ -61,9 +67,18 @@ function PinLine({ pin }: { pin: PinState }) {
   );
   const marked = useStudio((state) => state.marked.includes(side));
   const { figures, suf } = pin;
+  const origin = originOf(pin);
+  const look = useRef<HTMLButtonElement>(null);
+  const [naming, setNaming] = useState(false);
+  const named = (name: string, byKey: boolean) => {
+    setNaming(false);
+    if (byKey) look.current?.focus();
+    renamePin(pin, name);
+  };
   return (
     <li className={marked ? "marked" : ""}>
       <button
+        ref={look}
         type="button"
         className="pin-look"
         aria-pressed={current}
@@ -71,11 +86,19 @@ function PinLine({ pin }: { pin: PinState }) {
         onClick={(event) =>
           event.ctrlKey || event.metaKey || event.shiftKey ? toggleMark(side) : lookAt(side)
         }
+        onKeyDown={(event) => {
+          if (event.key === RENAME_KEY) setNaming(true);
+        }}
       >
         <Thumbnail path={pathOfSide(document, side)} width={72} height={56} />
       </button>
       <div>
-        <b>{pin.label}</b>
+        {naming ? (
+          <NameField label="Name of the pin" name={pin.label} most={80} onDone={named} />
+        ) : (
+          <b>{pin.label}</b>
+        )}
+        {origin !== pin.label && <small>{origin}</small>}
         <dl>
           <dt>Springs</dt>
           <dd>{figures.springs.toLocaleString("en")}</dd>
@@ -95,10 +118,25 @@ function PinLine({ pin }: { pin: PinState }) {
         <IconButton label={`Compare ${pin.label}`} side="left" onClick={() => compareWith(side)}>
           <Columns2 />
         </IconButton>
+        <IconButton
+          label={`Rename ${pin.label}`}
+          keys={RENAME_KEY}
+          side="left"
+          onClick={() => setNaming(true)}
+        >
+          <Pencil />
+        </IconButton>
         <IconButton label={`Unpin ${pin.label}`} side="left" onClick={() => togglePin(side)}>
           <PinOff />
         </IconButton>
       </div>
     </li>
   );
+}
+
+/** What a pin of a run would be called by itself. */
+function originOf({ label, place }: PinState): string {
+  return place === null || place.individual === null
+    ? label
+    : labelOfSide([], sideOf(place.generation, place.individual));
 }

@@ -136,7 +136,7 @@ function Course({ run }: { run: Run }) {
   const { start_springs, start_differential } = run.state;
   const last = run.rows.at(-1);
   const steer = (what: "pause" | "continue" | "stop") =>
-    ask({ type: "steer_run", what, parameters: {} });
+    ask({ type: "steer_run", what, parameters: {} }, "Steering the run");
   const alive = status === "running" || status === "paused";
   return (
     <>
@@ -167,7 +167,9 @@ function Course({ run }: { run: Run }) {
           <input
             type="checkbox"
             checked={following}
-            onChange={(event) => ask({ type: "follow", on: event.target.checked })}
+            onChange={(event) =>
+              ask({ type: "follow", on: event.target.checked }, "Following the run")
+            }
           />
           Follow in the view
         </label>
@@ -217,11 +219,15 @@ function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
   const [texts, setTexts] = useState<Texts>(() => textsOf(run?.state.parameters ?? {}, method));
   const [problems, setProblems] = useState<Texts>({});
   const alive = run?.state.status === "running" || run?.state.status === "paused";
-  const send = async (request: (values: Record<string, unknown>) => Asking, names: Names) => {
+  const send = async (
+    label: string,
+    request: (values: Record<string, unknown>) => Asking,
+    names: Names,
+  ) => {
     const values = names.map((name) => [name, valueSaid(name, texts[name] ?? "")]);
     setProblems({});
     try {
-      await askQuietly(request(Object.fromEntries(values)));
+      await askQuietly(request(Object.fromEntries(values)), label);
       return true;
     } catch (error) {
       const { key, words } = error as Refused;
@@ -232,13 +238,18 @@ function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
     }
   };
   const start = async () => {
-    const begun = await send((parameters) => ({ type: "evolve", looked: false, parameters }), SET);
+    const begun = await send(
+      "Starting the run",
+      (parameters) => ({ type: "evolve", looked: false, parameters }),
+      SET,
+    );
     if (!begun) return;
     setOpen(false);
     onStart();
   };
   const change = () =>
     send(
+      "Changing the parameters",
       (parameters) => ({ type: "steer_run", what: "change", parameters }),
       SET.filter((name) => !FIXED.includes(name)),
     );

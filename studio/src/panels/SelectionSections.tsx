@@ -9,6 +9,7 @@ import { foreseen } from "./foreseen";
 import { SpringCard } from "./HoverCard";
 import { NodeSection } from "./NodeSection";
 import { Fact, Hint, Section } from "./parts";
+import { perform } from "./performing";
 import { TypePicker } from "./TypePicker";
 import { useStage, useStudio } from "./use";
 
@@ -106,7 +107,7 @@ function CommandWord({ id, word }: { id: string; word: string }) {
               orbit: grafting.getState().lock,
             })
           : {})}
-        onClick={() => refused === null && command.run({ viewport, dialogs })}
+        onClick={() => perform(command, { viewport, dialogs })}
       >
         {word}
       </button>

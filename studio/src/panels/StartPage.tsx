@@ -1,5 +1,5 @@
 // The start: scenes with their pictures, documents worked on before, and a file by its path.
-import { LoaderCircle, Trash2 } from "lucide-react";
+import { Trash2 } from "lucide-react";
 import { type FormEvent, useEffect, useState } from "react";
 import { toast } from "sonner";
 import { ask } from "../document/store";
@@ -16,14 +16,14 @@ export function StartPage() {
   const [shelf, setShelf] = useState<Shelf | null>(null);
   const [problem, setProblem] = useState("");
   const [fileProblem, setFileProblem] = useState("");
-  const [opening, setOpening] = useState("");
+  const [opening, setOpening] = useState(false);
   const [path, setPath] = useState("");
   const [all, setAll] = useState(false);
   useEffect(() => {
     fetchShelf().then(setShelf, (error: Error) => setProblem(error.message));
   }, []);
   const open = async (source: string, tell: (problem: string) => void) => {
-    setOpening(source);
+    setOpening(true);
     tell("");
     try {
       const { id, went_on } = await openSource(source);
@@ -32,7 +32,7 @@ export function StartPage() {
     } catch (error) {
       tell((error as Error).message);
     }
-    setOpening("");
+    setOpening(false);
   };
   const remove = async (id: string) => {
     try {
@@ -59,11 +59,6 @@ export function StartPage() {
             {problem}
           </p>
         )}
-        {!shelf && !problem && (
-          <p className="busy">
-            <LoaderCircle /> Loading …
-          </p>
-        )}
         {shelf && shelf.documents.length > 0 && (
           <section aria-labelledby="recent">
             <h2 id="recent">Go on with</h2>
@@ -85,16 +80,9 @@ export function StartPage() {
             <ul className="scenes">
               {shelf.scenes.map(({ name, description }) => (
                 <li key={name}>
-                  <button
-                    type="button"
-                    onClick={() => open(name, setProblem)}
-                    disabled={opening !== ""}
-                  >
+                  <button type="button" onClick={() => open(name, setProblem)} disabled={opening}>
                     <Thumbnail path={`/api/scenes/${name}/picture`} width={256} height={172} />
-                    <b>
-                      {name.replaceAll("-", " ")}
-                      {opening === name && <LoaderCircle />}
-                    </b>
+                    <b>{name.replaceAll("-", " ")}</b>
                     <small>{description}</small>
                   </button>
                 </li>
@@ -111,11 +99,7 @@ export function StartPage() {
               value={path}
               onChange={(event) => setPath(event.target.value)}
             />
-            <button
-              type="submit"
-              className="button primary"
-              disabled={!path.trim() || opening !== ""}
-            >
+            <button type="submit" className="button primary" disabled={!path.trim() || opening}>
               Open
             </button>
           </form>

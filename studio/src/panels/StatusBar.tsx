@@ -1,13 +1,12 @@
 // The bar at the bottom: form-finding and whether it has converged, and what the engine is busy with.
-import { LoaderCircle, Pause, Play, RotateCcw, StepForward } from "lucide-react";
+import { Pause, Play, RotateCcw, StepForward } from "lucide-react";
 import { inDigits } from "../document/scale";
 import { move } from "./commands";
-import { IconButton } from "./parts";
+import { Busy, IconButton } from "./parts";
 import { useStudio } from "./use";
 
 export function StatusBar() {
   const running = useStudio((state) => state.motion?.header.running ?? true);
-  const busy = useStudio((state) => state.busy);
   return (
     <footer className="status-bar">
       <fieldset className="motion-buttons" aria-label="Form-finding">
@@ -34,11 +33,7 @@ export function StatusBar() {
       <Badge />
       <Residual />
       <div className="gap" />
-      {busy && (
-        <span className="busy" role="status">
-          <LoaderCircle /> {busy} …
-        </span>
-      )}
+      <Busy />
       <Counts />
     </footer>
   );

@@ -17,6 +17,7 @@ import { useDialogs } from "./dialogs";
 import { useGrafting } from "./GraftPanel";
 import { toggleLock } from "./graftCommands";
 import { Hint, IconButton, Keys } from "./parts";
+import { perform } from "./performing";
 import { useStage, useStudio } from "./use";
 
 export function TopBar() {
@@ -107,7 +108,7 @@ export function CommandButton({
       keys={command.keys}
       {...(side ? { side } : {})}
       aria-disabled={refused !== null}
-      onClick={() => refused === null && command.run({ viewport, dialogs })}
+      onClick={() => perform(command, { viewport, dialogs })}
     >
       {children}
     </IconButton>

@@ -33,6 +33,7 @@ export const CHOOSING_COMMANDS: Command[] = [
     label: "Pin what is shown, or unpin it",
     group: "Choosing",
     keys: "P",
+    acts: true,
     run: () => togglePin(shownSide(store.getState().document)),
   },
   {

@@ -1,8 +1,10 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
 import { isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
+import { plainType } from "../document/quantities";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
+import { inTurn } from "../document/turns";
 import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
 import { CHOOSING_COMMANDS } from "./choosingCommands";
@@ -36,8 +38,8 @@ export interface Command {
   when?(state: State): boolean;
   /** Whether it can be done now; if not, why. */
   refused?(state: State): string | null;
-  /** Whether an answer that is on its way may make it possible; the engine then says if it is. */
-  mayBecomePossible?: boolean;
+  /** Whether it acts on the document, and so waits for answers that are on their way. */
+  acts?: boolean;
   run(stage: { viewport: Viewport | null; dialogs: Dialogs }): void;
 }
 
@@ -77,10 +79,14 @@ function editCells(what: "subdivide" | "off" | "on" | "turn", label: string): ()
 
 /** Gives the selected cells a type. */
 export function retype(kind: string): void {
-  ask(
-    { type: "edit_cells", what: "retype", cells: cells(), kind, orbit: grafting.getState().lock },
-    "Changing the type",
-  );
+  inTurn(() => {
+    const { net, selection } = store.getState();
+    const rows = net ? selectedRows(net, selection, "cells") : [];
+    const other = rows.some((row) => plainType(net!.types[row]) !== kind);
+    const orbit = grafting.getState().lock;
+    if (other)
+      ask({ type: "edit_cells", what: "retype", cells: cells(), kind, orbit }, "Changing the type");
+  });
 }
 
 export function undo(redo: boolean): void {
@@ -88,14 +94,16 @@ export function undo(redo: boolean): void {
 }
 
 export function move(what: "run" | "pause" | "step" | "reset"): void {
-  ask({ type: "move", what });
+  ask({ type: "move", what }, "Moving the net");
 }
 
 export function seek(steps: number): void {
-  const { document } = store.getState();
-  const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
-  const orbit = grafting.getState().lock;
-  ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
+  inTurn(() => {
+    const { document } = store.getState();
+    const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
+    const orbit = grafting.getState().lock;
+    ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
+  });
 }
 
 const BAND = 0.1; // of the force, on each side
@@ -155,7 +163,13 @@ export const COMMANDS: Command[] = [
     keys: "Space",
     run: () => move(store.getState().motion?.header.running ? "pause" : "run"),
   },
-  { id: "step", label: "Make one step", group: "Net", keys: ".", run: () => move("step") },
+  {
+    id: "step",
+    label: "Make one step",
+    group: "Net",
+    keys: ".",
+    run: () => inTurn(() => move("step")),
+  },
   {
     id: "reset",
     label: "Put the net back to where it was drawn",
@@ -177,6 +191,7 @@ export const COMMANDS: Command[] = [
     group: "Cells",
     keys: "S",
     refused: needsCells,
+    acts: true,
     run: editCells("subdivide", "Subdividing"),
   },
   {
@@ -184,7 +199,12 @@ export const COMMANDS: Command[] = [
     label: "Merge with siblings (off)",
     group: "Cells",
     keys: "M",
-    refused: needsCells,
+    refused: (state) =>
+      needsCells(state) ??
+      (state.selection.keys.every((cell) => cell.includes("."))
+        ? null
+        : "select parts of subdivided cells"),
+    acts: true,
     run: editCells("off", "Merging"),
   },
   {
@@ -193,6 +213,7 @@ export const COMMANDS: Command[] = [
     group: "Cells",
     keys: "Shift+M",
     refused: needsCells,
+    acts: true,
     run: editCells("on", "Bringing back"),
   },
   {
@@ -201,6 +222,7 @@ export const COMMANDS: Command[] = [
     group: "Cells",
     keys: "R",
     refused: needsCells,
+    acts: true,
     run: editCells("turn", "Turning"),
   },
   {
@@ -221,6 +243,7 @@ export const COMMANDS: Command[] = [
     group: "Springs and nodes",
     keys: "Delete",
     refused: needsSpring,
+    acts: true,
     run: () => {
       const nodes = store.getState().selection.keys[0].split(" ");
       ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
@@ -232,6 +255,7 @@ export const COMMANDS: Command[] = [
     group: "Springs and nodes",
     keys: "H",
     refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? "it is an anchor" : null),
+    acts: true,
     run: () => {
       support(store.getState().selection.keys[0], "xyz");
     },
@@ -242,6 +266,7 @@ export const COMMANDS: Command[] = [
     group: "Springs and nodes",
     keys: "Shift+H",
     refused: (state) => needsOneNode(state) ?? (onAnchor(state) ? null : "it is no anchor"),
+    acts: true,
     run: () => {
       support(store.getState().selection.keys[0], "free");
     },
@@ -258,6 +283,7 @@ export const COMMANDS: Command[] = [
     label: "Let the node slide along x",
     group: "Springs and nodes",
     refused: needsOneNode,
+    acts: true,
     run: () => support(store.getState().selection.keys[0], "yz"),
   },
   {
@@ -265,6 +291,7 @@ export const COMMANDS: Command[] = [
     label: "Let the node slide along y",
     group: "Springs and nodes",
     refused: needsOneNode,
+    acts: true,
     run: () => support(store.getState().selection.keys[0], "xz"),
   },
   {
@@ -272,6 +299,7 @@ export const COMMANDS: Command[] = [
     label: "Let the node slide along z",
     group: "Springs and nodes",
     refused: needsOneNode,
+    acts: true,
     run: () => support(store.getState().selection.keys[0], "xy"),
   },
   { id: "tool-pull", label: "Select and pull", group: "Tools", keys: "V", run: tool("pull") },
@@ -303,6 +331,7 @@ export const COMMANDS: Command[] = [
     label: "Evolve live, or pause it",
     group: "Net",
     keys: "L",
+    acts: true,
     run: () => {
       const status = store.getState().live?.status ?? "none";
       const what = {
@@ -319,6 +348,7 @@ export const COMMANDS: Command[] = [
     label: "Stop live evolution and keep the net",
     group: "Net",
     refused: needsLive,
+    acts: true,
     run: keepGrown,
   },
   {
@@ -326,6 +356,7 @@ export const COMMANDS: Command[] = [
     label: "Discard what evolved live",
     group: "Net",
     refused: needsLive,
+    acts: true,
     run: discardGrown,
   },
   {
@@ -333,6 +364,7 @@ export const COMMANDS: Command[] = [
     label: "Bring back what was discarded",
     group: "Net",
     refused: ({ live }) => (live?.restorable ? null : "nothing was discarded"),
+    acts: true,
     run: restoreGrown,
   },
   {
@@ -341,6 +373,7 @@ export const COMMANDS: Command[] = [
     group: "Net",
     refused: ({ live }) =>
       Object.keys(live?.weights ?? {}).length ? null : "no cells are brushed",
+    acts: true,
     run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
   },
   {
@@ -447,7 +480,7 @@ export const COMMANDS: Command[] = [
     group: "Document",
     keys: "Ctrl+Z",
     refused: ({ document }) => (document?.position ? null : "nothing was done"),
-    mayBecomePossible: true,
+    acts: true,
     run: () => undo(false),
   },
   {
@@ -457,7 +490,7 @@ export const COMMANDS: Command[] = [
     keys: "Ctrl+Shift+Z",
     refused: ({ document }) =>
       document && document.position < document.length ? null : "nothing was undone",
-    mayBecomePossible: true,
+    acts: true,
     run: () => undo(true),
   },
   {
@@ -465,6 +498,7 @@ export const COMMANDS: Command[] = [
     label: "Save",
     group: "Document",
     keys: "Ctrl+S",
+    acts: true,
     run: ({ dialogs }) => {
       if (store.getState().document?.file)
         ask({ type: "save", path: null, replace: false }, "Saving");

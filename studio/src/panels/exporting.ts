@@ -1,10 +1,13 @@
 // Files for others: the picture as the canvas shows it, and the model as the engine writes it.
-import { formulaText, quantityOf } from "../document/quantities";
-import { inDigits } from "../document/scale";
-import { busyWith, store } from "../document/store";
+import { comparing, isComparing, sharedColour, sharedQuantity } from "../document/comparing";
+import { formulaText, kindOf, type Quantity, quantityOf } from "../document/quantities";
+import { inDigits, type Scale, scaleOf } from "../document/scale";
+import { orNotice, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { fetchModel } from "../protocol/fetching";
+import { waited } from "../protocol/waits";
 import type { Viewport } from "../viewport/scene";
+import type { Legend } from "../viewport/vector";
 
 /** Files of the model, by the name that the engine knows. */
 export const MODELS = [
@@ -15,44 +18,52 @@ export const MODELS = [
 ] as const;
 
 export async function exportPicture(viewport: Viewport): Promise<void> {
-  const address = URL.createObjectURL(await viewport.picture());
-  download(address, `${name()}.png`);
-  URL.revokeObjectURL(address);
+  const legend = isComparing() ? sharedLegend() : legendOf(viewport);
+  const picture = await orNotice(waited("Drawing the picture", viewport.picture(legend)));
+  if (picture) save(picture, "png");
 }
 
 export function exportDrawing(viewport: Viewport): void {
-  const { view, theme } = store.getState();
-  const quantity = quantityOf(view.colour.by);
+  save(viewport.drawing(legendOf(viewport)), "svg");
+}
+
+/** What the colours of the net mean. */
+function legendOf(viewport: Viewport): Legend | null {
+  const { colour } = store.getState().view;
   const shown = viewport.colouring?.legend;
-  const legend =
-    quantity && shown?.shows === "scale"
-      ? {
-          title: `${quantity.name}${quantity.unit && ` [${quantity.unit}]`}${shown.scale.logarithmic ? ", log" : ""}`,
-          formula: formulaText(quantity),
-          low: inDigits(shown.scale.low),
-          high: inDigits(shown.scale.high),
-          palette: view.colour.palette,
-          theme,
-        }
-      : null;
-  const address = URL.createObjectURL(viewport.drawing(legend));
-  download(address, `${name()}.svg`);
-  URL.revokeObjectURL(address);
+  if (shown?.shows === "kinds")
+    return { title: kindOf(colour.by)?.name ?? "", kinds: shown.entries };
+  const quantity = quantityOf(colour.by);
+  return quantity && shown ? scaleLegend(quantity, shown.scale) : null;
+}
+
+/** What the colours of both nets mean. */
+function sharedLegend(): Legend {
+  const { colour } = store.getState().view;
+  const shared = sharedColour(comparing.getState().nets, colour);
+  return scaleLegend(sharedQuantity(colour), scaleOf(new Float32Array(), shared));
+}
+
+function scaleLegend(quantity: Quantity, { low, high, logarithmic }: Scale): Legend {
+  const { view, theme } = store.getState();
+  return {
+    title: `${quantity.name}${quantity.unit && ` [${quantity.unit}]`}${logarithmic ? ", log" : ""}`,
+    formula: formulaText(quantity),
+    low: inDigits(low),
+    high: inDigits(high),
+    palette: view.colour.palette,
+    theme,
+  };
 }
 
 export async function exportModel(format: (typeof MODELS)[number]["name"]): Promise<void> {
-  const content = await busyWith("Writing the file", fetchModel(documentInAddress(), format));
-  if (!content) return;
-  const address = URL.createObjectURL(content);
-  const suffix = format === "tables" ? "zip" : format;
-  download(address, `${name()}.${suffix}`);
-  URL.revokeObjectURL(address);
+  const content = await orNotice(fetchModel(documentInAddress(), format));
+  if (content) save(content, format === "tables" ? "zip" : format);
 }
 
-function download(href: string, file: string): void {
-  Object.assign(document.createElement("a"), { href, download: file }).click();
-}
-
-function name(): string {
-  return (store.getState().document?.name ?? "net").replaceAll(" ", "-");
+function save(content: Blob, suffix: string): void {
+  const href = URL.createObjectURL(content);
+  const name = (store.getState().document?.name ?? "net").replaceAll(" ", "-");
+  Object.assign(document.createElement("a"), { href, download: `${name}.${suffix}` }).click();
+  URL.revokeObjectURL(href);
 }

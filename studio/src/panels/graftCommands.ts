@@ -51,6 +51,7 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Grafting",
     keys: "Enter",
     when: inHand,
+    acts: true,
     run: () => void applyGraft(),
   },
   {
@@ -103,6 +104,7 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Selecting",
     keys: "]",
     refused: needsCells,
+    acts: true,
     run: grow(1),
   },
   {
@@ -111,6 +113,7 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Selecting",
     keys: "[",
     refused: needsCells,
+    acts: true,
     run: grow(-1),
   },
   {
@@ -118,14 +121,23 @@ export const GRAFT_COMMANDS: Command[] = [
     label: "Invert the selection",
     group: "Selecting",
     keys: "I",
+    acts: true,
     run: invertSelection,
   },
-  { id: "all", label: "Select all cells", group: "Selecting", keys: "Ctrl+A", run: selectAll },
+  {
+    id: "all",
+    label: "Select all cells",
+    group: "Selecting",
+    keys: "Ctrl+A",
+    acts: true,
+    run: selectAll,
+  },
   {
     id: "to-rows",
     label: "Extend the selection to rows",
     group: "Selecting",
     refused: needsCells,
+    acts: true,
     run: gather("row"),
   },
   {
@@ -133,6 +145,7 @@ export const GRAFT_COMMANDS: Command[] = [
     label: "Extend the selection to loops",
     group: "Selecting",
     refused: needsCells,
+    acts: true,
     run: gather("loop"),
   },
   {
@@ -140,6 +153,7 @@ export const GRAFT_COMMANDS: Command[] = [
     label: "Extend the selection to cylinders",
     group: "Selecting",
     refused: needsCells,
+    acts: true,
     run: gather("part"),
   },
   {
@@ -147,6 +161,7 @@ export const GRAFT_COMMANDS: Command[] = [
     label: "Extend the selection to cells of the same force",
     group: "Selecting",
     refused: needsCells,
+    acts: true,
     run: gather("band"),
   },
   {
@@ -154,6 +169,7 @@ export const GRAFT_COMMANDS: Command[] = [
     label: "Extend the selection to its orbit",
     group: "Selecting",
     refused: needsCells,
+    acts: true,
     run: () => selectBy({ cells: store.getState().selection.keys, orbit: true }, true),
   },
 ];

@@ -1,7 +1,23 @@
 // Small parts that all panels are made of: buttons with tooltips, keys, numbers, fields.
+import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { type ComponentProps, type ReactNode, useEffect, useRef, useState } from "react";
 import { inDigits } from "../document/scale";
+import { useStudio } from "./use";
+
+/** What is waited for, if anything is. */
+export function Busy() {
+  const busy = useStudio((state) => state.busy);
+  return (
+    <span className="busy" role="status">
+      {busy && (
+        <>
+          <LoaderCircle /> {busy} …
+        </>
+      )}
+    </span>
+  );
+}
 
 /** Keys as they are printed on a keyboard. */
 export function Keys({ keys }: { keys: string }) {
@@ -223,6 +239,46 @@ export function NumberField({
       />
       {unit && <span className="unit">{unit}</span>}
     </label>
+  );
+}
+
+/** A name, typed in its own place; taken with Enter or on leaving the field, Escape leaves it as it was. */
+export function NameField({
+  label,
+  name,
+  most,
+  onDone,
+}: {
+  label: string;
+  name: string;
+  /** Most characters. */
+  most: number;
+  /** With the name as it is now; `byKey` if the focus has to go somewhere. */
+  onDone(name: string, byKey: boolean): void;
+}) {
+  // A field that goes away is left, too.
+  const done = useRef(false);
+  const end = (typed: string, byKey: boolean) => {
+    if (done.current) return;
+    done.current = true;
+    onDone(typed.trim() || name, byKey);
+  };
+  return (
+    <input
+      aria-label={label}
+      defaultValue={name}
+      maxLength={most}
+      // biome-ignore lint/a11y/noAutofocus: it was asked for
+      autoFocus
+      onFocus={(event) => event.target.select()}
+      onBlur={(event) => end(event.target.value, false)}
+      onKeyDown={(event) => {
+        if (event.key !== "Enter" && event.key !== "Escape") return;
+        // What gets the focus now is not to be pressed by the same key.
+        event.preventDefault();
+        end(event.key === "Enter" ? event.currentTarget.value : name, true);
+      }}
+    />
   );
 }
 

@@ -2,6 +2,7 @@
 import { engineAddress } from "./address";
 import { decodeFrame, type Frame } from "./frames";
 import type { Protocol, Refusal, Reply } from "./messages";
+import { waited } from "./waits";
 
 type Request = Protocol["request"];
 type Event = Protocol["event"];
@@ -65,12 +66,13 @@ export class Connection {
   }
 
   /** Asks for something and waits for the reply. Rejects with `Refused`: what the engine says is wrong. */
-  async ask(request: Asking): Promise<Reply> {
+  async ask(request: Asking, label: string): Promise<Reply> {
     const id = ++this.number;
-    const reply = await new Promise<Reply>((resolve) => {
+    const coming = new Promise<Reply>((resolve) => {
       this.waiting.set(id, resolve);
       if (!this.send({ ...request, id } as Request)) this.fail(id);
     });
+    const reply = await waited(label, coming);
     if (reply.problem !== null) throw new Refused(reply.problem, reply.key);
     return reply;
   }

@@ -29,6 +29,7 @@ export interface Protocol {
     | Reinstate
     | Pin
     | Unpin
+    | RenamePin
     | LiveEvolve
     | WeighCells
     | SelectCells
@@ -347,6 +348,15 @@ export interface Unpin {
   type: "unpin";
   id: number;
   pin: number;
+}
+/**
+ * Call a pinned net something else.
+ */
+export interface RenamePin {
+  type: "rename_pin";
+  id: number;
+  pin: number;
+  label: string;
 }
 /**
  * Let the net evolve before one's eyes, steer it, and keep or discard what it grew.
@@ -818,7 +828,7 @@ export interface Pins {
 export interface PinState {
   number: number;
   /**
-   * Such as ``Generation 34, individual 2``.
+   * What it is called: such as ``Generation 34, individual 2``, until somebody renames it.
    */
   label: string;
   /**

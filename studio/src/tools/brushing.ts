@@ -1,6 +1,8 @@
 // Brush: every cell that the pointer passes is subdivided, or given a type, when the button comes up.
 import { grafting } from "../document/grafting";
+import { rowsByKey } from "../document/selection";
 import { ask, store } from "../document/store";
+import { inTurn } from "../document/turns";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
 import { beginsStroke, cellsUnderBrush } from "./brush";
@@ -44,12 +46,18 @@ export class Brushing implements Tool {
 
   private finish(viewport: Viewport): void {
     const { net, brushType } = store.getState();
-    const cells = net ? [...viewport.brushed].map((row) => net.addresses[row]) : [];
+    const brushed = net ? [...viewport.brushed].map((row) => net.addresses[row]) : [];
     this.cancel(viewport);
-    if (!cells.length) return;
-    const kind = this.what === "retype" ? brushType : null;
-    const label = this.what === "retype" ? "Changing types" : "Subdividing";
-    const orbit = grafting.getState().lock;
-    ask({ type: "edit_cells", what: this.what, cells, kind, orbit }, label);
+    if (brushed.length)
+      inTurn(() => {
+        // The stroke before may have divided what this one passed while it was still seen whole.
+        const { net } = store.getState();
+        const cells = net ? brushed.filter((cell) => rowsByKey(net, "cells").has(cell)) : [];
+        if (!cells.length) return;
+        const kind = this.what === "retype" ? brushType : null;
+        const label = this.what === "retype" ? "Changing types" : "Subdividing";
+        const orbit = grafting.getState().lock;
+        ask({ type: "edit_cells", what: this.what, cells, kind, orbit }, label);
+      });
   }
 }

@@ -2,7 +2,9 @@
 import * as THREE from "three";
 import { grafting } from "../document/grafting";
 import { positionOf } from "../document/motion";
+import { rowsByKey, springKey } from "../document/selection";
 import { ask, store } from "../document/store";
+import { inTurn } from "../document/turns";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
 import type { Pointer, Tool } from "./tool";
@@ -23,8 +25,13 @@ export class Cutting implements Tool {
   click(_: Viewport, hit: Hit | null): void {
     const { net } = store.getState();
     if (hit?.kind !== "spring" || !net) return;
-    const nodes = [net.nodes[net.ends[2 * hit.row]], net.nodes[net.ends[2 * hit.row + 1]]];
-    ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
+    const spring = springKey(net, hit.row);
+    inTurn(() => {
+      const { net } = store.getState();
+      if (!net || !rowsByKey(net, "springs").has(spring)) return;
+      const nodes = spring.split(" ");
+      ask({ type: "edit_spring", what: "cut", nodes, orbit: grafting.getState().lock }, "Cutting");
+    });
   }
 }
 

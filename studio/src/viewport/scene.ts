@@ -22,7 +22,8 @@ import { type Hit, Projection, pick } from "./picking";
 import { type Disc, Discs } from "./points";
 import { Ribbons } from "./ribbons";
 import { Skin } from "./skin";
-import { type Legend, svgOf } from "./vector";
+import { type Captions, captionsOf, type Legend, svgOf } from "./vector";
+import { Words } from "./words";
 
 const GROUND: Record<State["theme"], string> = { dark: "#0e1117", light: "#f6f7f9" };
 const INK: Record<State["theme"], Colour> = { dark: [244, 246, 250], light: [22, 26, 33] };
@@ -195,40 +196,50 @@ export class Viewport {
     return caster.ray;
   }
 
-  /** The picture as a PNG, with ribbons however slow they are. */
-  async picture(): Promise<Blob> {
+  /** The picture as a PNG, twice as fine as the screen, with ribbons however slow they are and what is said over it. */
+  async picture(legend: Legend | null): Promise<Blob> {
+    const words = await Words.of(captionsOf(this.captions(legend)));
+    const screen = this.renderer.getPixelRatio();
+    const most = this.renderer.capabilities.maxTextureSize / Math.max(this.width, this.height);
+    this.renderer.setPixelRatio(Math.min(2 * screen, most));
     this.render(true);
-    return new Promise((resolve, reject) => {
-      this.canvas.toBlob((blob) =>
-        blob ? resolve(blob) : reject(new Error("the picture can't be made")),
-      );
-    });
+    const picture = words.over(this.canvas);
+    this.renderer.setPixelRatio(screen);
+    this.render(true);
+    return picture;
   }
 
   /** The picture as an SVG file: what the canvas shows, as lines. */
   drawing(legend: Legend | null): Blob {
-    const { net, motion, theme, view } = store.getState();
+    const { net, motion, view } = store.getState();
     if (!net || !motion) throw new Error("there is no net to draw");
     const cut = cutOf(view.section, motion.positions);
-    const anchors = view.anchors
-      ? [...net.anchors]
-          .map((node, number) => ({ node, name: net.anchorNames[number] }))
-          .filter(({ node }) => keeps(cut, motion.positions, node))
-          .map(({ node, name }) => ({ at: positionOf(motion, node), name }))
-      : [];
     const text = svgOf({
+      ...this.captions(legend),
+      springs: this.lines(net, motion, cut),
+      arrows: this.arrowLines(cut),
+      haze: this.eye.haze(),
+    });
+    return new Blob([text], { type: "image/svg+xml" });
+  }
+
+  /** What is said over the picture; names of anchors only of one net. */
+  private captions(legend: Legend | null): Captions {
+    const { net, motion, theme, view } = store.getState();
+    const cut = motion && cutOf(view.section, motion.positions);
+    const named = net && motion && view.anchors && !isComparing() ? [...net.anchors] : [];
+    return {
       width: this.width,
       height: this.height,
       camera: this.eye.camera,
       ground: GROUND[theme],
       ink: `rgb(${INK[theme].join(",")})`,
-      springs: this.lines(net, motion, cut),
-      arrows: this.arrowLines(cut),
-      haze: this.eye.haze(),
-      anchors,
+      anchors: named
+        .map((node, number) => ({ node, name: net!.anchorNames[number] }))
+        .filter(({ node }) => keeps(cut, motion!.positions, node))
+        .map(({ node, name }) => ({ at: positionOf(motion!, node), name })),
       legend,
-    });
-    return new Blob([text], { type: "image/svg+xml" });
+    };
   }
 
   dispose(): void {

@@ -1,43 +1,56 @@
-// The picture as SVG: every spring a line of its own, as the camera sees it, with a legend in real text.
+// The picture as SVG: every spring a line of its own, as the camera sees it, with names and a legend in real text.
 import * as THREE from "three";
-import { type Colour, cssGradient, type PaletteId, type Theme } from "../document/palettes";
+import {
+  type Colour,
+  cssColour,
+  cssGradient,
+  type PaletteId,
+  type Theme,
+} from "../document/palettes";
 import type { Lines } from "../document/section";
 
-/** What is drawn. */
-export interface Drawing {
+/** Words over a picture. */
+export interface Captions {
   width: number;
   height: number;
   camera: THREE.PerspectiveCamera;
   ground: string;
   ink: string;
+  /** Places with a name [m]. */
+  anchors: { at: [number, number, number]; name: string }[];
+  legend: Legend | null;
+}
+
+/** What is drawn. */
+export interface Drawing extends Captions {
   /** Drawn far to near, each as wide as on the canvas [px]. */
   springs: Lines;
   /** Drawn over the springs. */
   arrows: Lines;
   /** Depths between which the ground shines through, as on the canvas [m]. */
   haze: THREE.Vector2;
-  /** Places with a name [m]. */
-  anchors: { at: [number, number, number]; name: string }[];
-  legend: Legend | null;
 }
 
-export interface Legend {
-  title: string;
-  formula: string;
-  low: string;
-  high: string;
-  palette: PaletteId;
-  theme: Theme;
-}
+/** What the colours mean: the ends of a scale, or kinds one by one. */
+export type Legend =
+  | {
+      title: string;
+      formula: string;
+      low: string;
+      high: string;
+      palette: PaletteId;
+      theme: Theme;
+    }
+  | { title: string; kinds: { name: string; colour: Colour }[] };
 
 const HAZE = 0.62;
 const FONT = "Inter, Helvetica, Arial, sans-serif";
 
 /** The drawing as the text of an SVG file. */
 export function svgOf(drawing: Drawing): string {
-  const { width, height, ground, ink } = drawing;
+  const { width, height, ground } = drawing;
   const parts = [
-    `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">`,
+    opening(drawing),
     `<rect width="${width}" height="${height}" fill="${ground}"/>`,
     `<g id="springs" fill="none" stroke-linecap="round">`,
     ...lines(drawing, drawing.springs, HAZE),
@@ -45,13 +58,28 @@ export function svgOf(drawing: Drawing): string {
     `<g id="reactions" fill="none" stroke-linecap="round">`,
     ...lines(drawing, drawing.arrows, 0),
     `</g>`,
-    `<g id="anchors" fill="${ink}" font-family="${FONT}" font-size="12">`,
-    ...drawing.anchors.flatMap(({ at, name }) => anchor(drawing, at, name)),
-    `</g>`,
-    ...legend(drawing),
+    ...captions(drawing),
     `</svg>`,
   ];
   return `${parts.join("\n")}\n`;
+}
+
+/** Nothing but the words of a drawing, to be laid over another picture, as the text of an SVG file. */
+export function captionsOf(said: Captions): string {
+  return [opening(said), ...captions(said), `</svg>`].join("\n");
+}
+
+function opening({ width, height }: Captions): string {
+  return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">`;
+}
+
+function captions(said: Captions): string[] {
+  return [
+    `<g id="anchors" fill="${said.ink}" font-family="${FONT}" font-size="12">`,
+    ...said.anchors.flatMap(({ at, name }) => anchor(said, at, name)),
+    `</g>`,
+    ...legend(said),
+  ];
 }
 
 function lines({ camera, width, height, ground, haze }: Drawing, set: Lines, strength: number) {
@@ -91,7 +119,7 @@ function beforeTheEye([a, b]: THREE.Vector3[], near: number): boolean {
 }
 
 function anchor(
-  { camera, width, height, ground }: Drawing,
+  { camera, width, height, ground }: Captions,
   at: [number, number, number],
   name: string,
 ) {
@@ -105,28 +133,46 @@ function anchor(
   ];
 }
 
-function legend({ legend: said, height, ink }: Drawing): string[] {
+function legend({ legend: said, height, ink }: Captions): string[] {
   if (!said) return [];
+  const top = height - 70 - ("kinds" in said ? 18 * Math.max(0, said.kinds.length - 3) : 0);
+  return [
+    `<g id="legend" fill="${ink}" font-family="${FONT}" font-size="12">`,
+    `<text x="20" y="${top}" font-weight="600">${escaped(said.title)}</text>`,
+    ...("kinds" in said ? kinds(said.kinds, top) : scale(said, top)),
+    `</g>`,
+  ];
+}
+
+function kinds(all: { name: string; colour: Colour }[], top: number): string[] {
+  return all.flatMap(({ name, colour }, row) => [
+    `<rect x="20" y="${top + 9 + 18 * row}" width="22" height="8" rx="3" fill="${commaed(cssColour(colour))}"/>`,
+    `<text x="50" y="${top + 17 + 18 * row}">${escaped(name)}</text>`,
+  ]);
+}
+
+function scale(said: Extract<Legend, { low: string }>, top: number): string[] {
   const stops = cssGradient(said.palette, said.theme)
     .replace(/^linear-gradient\(to right, |\)$/g, "")
     .split("), ")
     .map((colour) => (colour.endsWith(")") ? colour : `${colour})`));
-  const top = height - 70;
   return [
     `<linearGradient id="scale">`,
     ...stops.map(
       (colour, at) =>
-        `<stop offset="${short(at / (stops.length - 1))}" stop-color="${colour.replace(/rgb\((\d+) (\d+) (\d+)\)/, "rgb($1,$2,$3)")}"/>`,
+        `<stop offset="${short(at / (stops.length - 1))}" stop-color="${commaed(colour)}"/>`,
     ),
     `</linearGradient>`,
-    `<g id="legend" fill="${ink}" font-family="${FONT}" font-size="12">`,
-    `<text x="20" y="${top}" font-weight="600">${escaped(said.title)}</text>`,
     `<rect x="20" y="${top + 8}" width="210" height="10" rx="3" fill="url(#scale)"/>`,
     `<text x="20" y="${top + 34}">${escaped(said.low)}</text>`,
     `<text x="230" y="${top + 34}" text-anchor="end">${escaped(said.high)}</text>`,
     `<text x="20" y="${top + 52}" font-size="11" opacity="0.7">${escaped(said.formula)}</text>`,
-    `</g>`,
   ];
+}
+
+/** A colour as all programs that draw SVG read it. */
+function commaed(colour: string): string {
+  return colour.replace(/rgb\((\d+) (\d+) (\d+)\)/, "rgb($1,$2,$3)");
 }
 
 function short(value: number): string {
