@@ -313,6 +313,26 @@ def test_parameters_are_changed_before_and_while_it_evolves(window: Window) -> N
     assert (state["parameters"]["population"], state["changed"]) == (100, [])
 
 
+def test_keeping_what_did_not_change_is_no_action(window: Window) -> None:
+    """What was undone can be redone after it."""
+    window.settle()
+    assert (
+        window.ask(type="edit_cells", what="subdivide", cells=["9"], kind=None)["problem"] is None
+    )
+    assert window.ask(type="undo", redo=False)["problem"] is None
+    window.settle()
+    change = {"type": "live_evolve", "what": "change"}
+    # No mutant is allowed, so the parent stays.
+    assert window.ask(**change, parameters={"max_springs": 1})["problem"] is None
+    assert window.ask(type="live_evolve", what="start")["problem"] is None
+    live_at(window, 3)
+    assert window.ask(type="live_evolve", what="keep")["problem"] is None
+    window.settle()
+    assert window.document["position"] == 0
+    assert len(window.document["history"]) == 1
+    assert window.ask(type="undo", redo=True)["problem"] is None
+
+
 def begin(server: Server, window: Window) -> dict[str, Any]:
     """Brush, change a parameter and let it evolve; return what windows are told then."""
     window.settle()

@@ -48,7 +48,7 @@ def pins(window: Window) -> list[dict[str, Any]]:
     return found
 
 
-def pin(window: Window, side: str | None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def pin(window: Window, side: str) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     window.number += 1
     window.tell(type="pin", id=window.number, side=side)
     listed, reply = [], None
@@ -95,7 +95,7 @@ def test_a_pin_is_told_to_all_windows_and_outlives_run_and_studio(
             looked = again_served.state()
             assert looked["looking"]["pin"] == 1
             assert looked["looking"]["generation"] is None
-            assert window.ask(type="reinstate")["problem"] is None
+            assert window.ask(type="reinstate", side="pin/1")["problem"] is None
         taken = again_served.state()
         assert taken["figures"] == kept["figures"]
         assert taken["history"][-1]["label"] == "Take over generation 4, individual 3"
@@ -105,15 +105,15 @@ def test_a_pin_is_told_to_all_windows_and_outlives_run_and_studio(
 def test_a_net_taken_over_is_pinned_as_the_individual_that_it_is(server: Server) -> None:
     with server.window() as window:
         window.ask(type="look", generation=3, individual=None, pin=None)
-        reply, listed = pin(window, None)
+        reply, listed = pin(window, "run/3")
         assert reply["problem"] is None
         parent = listed[0]["place"]
         assert parent["individual"] is not None  # the parent is an individual, too
-        window.ask(type="reinstate")
-        again, _ = pin(window, None)
+        window.ask(type="reinstate", side="run/3")
+        again, _ = pin(window, "design")
         assert "pinned already" in again["problem"]
         window.ask(type="seek_stress", steps=1, kind="1")
-        reply, listed = pin(window, None)
+        reply, listed = pin(window, "design")
         assert reply["problem"] is None
         assert listed[1]["place"] is None
         assert listed[1]["label"] == "Design after 2 actions"
@@ -136,10 +136,9 @@ def test_a_pin_is_renamed_for_all_windows_and_for_good(server: Server, tmp_path:
         assert pins(other) == renamed
         assert "no such pin" in window.ask(type="rename_pin", pin=9, label="Hall")["problem"]
         for unfit in ("", " Hall", "a" * 81):
-            window.tell(type="rename_pin", id=99, pin=2, label=unfit)
-            while (event := window.receive()).get("type") != "problem":
-                pass
-            assert "label" in event["message"]
+            reply = window.ask(type="rename_pin", pin=2, label=unfit)
+            assert reply["key"] == "label"
+            assert reply["problem"].startswith("label: ")
     server.process.kill()
     server.process.wait()
     with serving(tmp_path / "home") as again:
@@ -152,13 +151,25 @@ def test_a_pin_is_renamed_for_all_windows_and_for_good(server: Server, tmp_path:
             assert again.state()["looking"]["label"] == "Generation 2, individual 1"
 
 
+def test_the_net_that_is_named_is_taken_over_whatever_is_shown_by_then(server: Server) -> None:
+    with server.window() as window:
+        window.ask(type="look", generation=4, individual=2, pin=None)
+        window.ask(type="look", generation=5, individual=None, pin=None)
+        assert window.ask(type="reinstate", side="run/4/2")["problem"] is None
+        last = server.state()["history"][-1]
+        assert last["label"] == "Take over generation 4, individual 2"
+        assert (last["origin"]["generation"], last["origin"]["individual"]) == (4, 2)
+        assert "your design" in window.ask(type="reinstate", side="design")["problem"]
+        assert "0 to 5" in window.ask(type="reinstate", side="run/77")["problem"]
+
+
 def test_a_design_taken_over_from_a_pin_keeps_the_name_of_the_pin(server: Server) -> None:
     with server.window() as window:
         pin(window, "design")
         window.ask(type="rename_pin", pin=1, label="Oslo")
         window.ask(type="look", generation=None, individual=None, pin=1)
         assert server.state()["looking"]["label"] == "Oslo"
-        window.ask(type="reinstate")
+        window.ask(type="reinstate", side="pin/1")
         assert server.state()["history"][-1]["label"] == "Take over Oslo"
 
 

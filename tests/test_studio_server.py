@@ -187,6 +187,15 @@ def test_a_window_sees_what_another_does(server: Server) -> None:
         assert server.state()["position"] == done
 
 
+def test_a_request_of_unfit_values_is_answered_with_what_is_wrong(server: Server) -> None:
+    with server.window() as window:
+        reply = window.ask(type="move_anchor", anchor="A1", position=[1e9, 0, 0])
+        assert reply["key"] == "position.0"
+        assert reply["problem"] == "position.0: must be less than or equal to 1000000"
+        assert window.ask(type="move_anchor", anchor="A1")["problem"] == "position: Field required"
+        assert "tag" in window.ask(type="no such request")["problem"]
+
+
 def test_an_action_that_does_not_fit_is_answered_and_changes_nothing(server: Server) -> None:
     with server.window() as window:
         before = server.state()

@@ -34,7 +34,7 @@ pub enum Why {
     Twice,
     /// A mirrored type has no mirror image.
     NoMirror,
-    /// A patch that was grafted before lies here.
+    /// What was grafted at another place of the same grafting lies here.
     Taken,
     /// The cell is not among those that may be written.
     Outside,
@@ -48,7 +48,7 @@ impl Why {
             Why::Branching => "the way meets an edge with more than two cells",
             Why::Twice => "the patch comes to this cell twice, round an irregular vertex",
             Why::NoMirror => "its cell type has no mirror image",
-            Why::Taken => "a patch grafted before lies here",
+            Why::Taken => "the patch reaches here from another place as well",
             Why::Outside => "the cell is not among those that may change",
         }
     }

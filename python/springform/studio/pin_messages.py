@@ -8,14 +8,7 @@ from pydantic import Field
 
 from .changes import Place
 from .figure_messages import Figures
-from .message_base import Message
-
-Side = Annotated[
-    str,
-    Field(pattern=r"^(design|pin/[0-9]{1,9}|run/[0-9]{1,9}(/[0-9]{1,9})?)$", max_length=40),
-]
-"""A net that can be pinned and compared: ``design``, ``pin/4``, the parent of a generation of the
-run, ``run/34``, or an individual of it, ``run/34/2``."""
+from .message_base import Message, Side
 
 
 class Pin(Message):
@@ -23,8 +16,7 @@ class Pin(Message):
 
     type: Literal["pin"] = "pin"
     id: int
-    side: Side | None
-    """None: what is shown."""
+    side: Side
 
 
 class Unpin(Message):

@@ -13,6 +13,7 @@ from ..network import Equilibrium
 from .changes import Place
 from .document import Document
 from .figure_messages import Figures
+from .message_base import Side
 from .pin_messages import (
     Compared,
     ComparedCount,
@@ -22,7 +23,6 @@ from .pin_messages import (
     Pin,
     Pins,
     RenamePin,
-    Side,
     Unpin,
 )
 from .pins import PinFolder
@@ -90,14 +90,11 @@ class PinStage:
         looked = Looked(label=net.label, generation=generation, individual=individual, pin=pin)
         return Looking(looked, net, figures_of(net.design))
 
-    def change(self, request: Pin | Unpin | RenamePin, shown: Looking | None) -> None:
-        """Do what a window asks; `shown` is what it shows instead of the design.
-
-        Raises `InputError`: there is no such net or pin, or it is pinned.
-        """
+    def change(self, request: Pin | Unpin | RenamePin) -> None:
+        """Do what a window asks. Raises `InputError`: no such net or pin, or it is pinned."""
         match request:
             case Pin():
-                self._pin(request.side, shown)
+                self._pin(request.side)
             case Unpin():
                 self.folder.drop(request.pin)
             case RenamePin():
@@ -143,12 +140,8 @@ class PinStage:
             ],
         )
 
-    def _pin(self, side: Side | None, shown: Looking | None) -> None:
-        if side is None and shown is not None:
-            net, figures = shown.net, shown.figures
-        else:
-            net = self.net(side or "design")
-            figures = figures_of(net.design)
+    def _pin(self, side: Side) -> None:
+        net = self.net(side)
         place = net.place
         if place is None:
             count = self._document.position
@@ -157,7 +150,7 @@ class PinStage:
         else:
             label = place.label
         suf = None if place is None else self._runs.suf(place)
-        self.folder.keep(net.design, label, place, suf, figures)
+        self.folder.keep(net.design, label, place, suf, figures_of(net.design))
 
     def _of_run(self, generation: int, individual: int | None) -> Net:
         run = self._runs.known()

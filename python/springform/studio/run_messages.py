@@ -6,16 +6,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from .message_base import Message
+from .message_base import Message, Side
 
 
 class Evolve(Message):
-    """Start a run from the design, with parameters; what is left out has its default."""
+    """Start a run with parameters; what is left out has its default."""
 
     type: Literal["evolve"] = "evolve"
     id: int
-    looked: bool = False
-    """Breed from what is looked at instead."""
+    side: Side = "design"
+    """The net that it starts from."""
     parameters: dict[str, Any]
 
 
@@ -50,10 +50,11 @@ class Follow(Message):
 
 
 class Reinstate(Message):
-    """Make what is looked at the design."""
+    """Make a net the design; it is named, since what is shown changes while a run is followed."""
 
     type: Literal["reinstate"] = "reinstate"
     id: int
+    side: Side
 
 
 class Looked(Message):

@@ -31,8 +31,9 @@ from .editing_messages import CurvePoints
 from .exports import export
 from .folders import folder_at
 from .library import Library
+from .message_base import Side
 from .messages import Refusal
-from .pin_messages import Comparing, Side
+from .pin_messages import Comparing
 from .run_messages import Brushes
 from .session import Session
 from .shelf_messages import DocumentEntry, Folder, Opened, Opening, SceneEntry, Shelf

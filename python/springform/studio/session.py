@@ -62,6 +62,7 @@ from .patches import PatchFolder
 from .pin_messages import Pin, RenamePin, Unpin
 from .pin_stage import Looking, PinStage
 from .preview import preview_of
+from .refusing import not_understood
 from .run_messages import (
     Evolve,
     Follow,
@@ -183,9 +184,7 @@ class Session:
         try:
             request = REQUEST.validate_json(text)
         except ValidationError as error:
-            first = error.errors(include_url=False, include_input=False)[0]
-            place = ".".join(str(part) for part in first["loc"])
-            window.tell(Problem(message=f"not understood: {place}: {first['msg']}"))
+            window.tell(not_understood(text, error))
             return
         try:
             if isinstance(request, Preview):
@@ -232,7 +231,7 @@ class Session:
                     await self._file_patch(request)
             case Pin() | Unpin() | RenamePin():
                 async with self._order:
-                    await self._in_thread(lambda: self.pins.change(request, self._looking))
+                    await self._in_thread(lambda: self.pins.change(request))
                     self._tell_all(self.pins.state())
             case _:
                 async with self._order:
@@ -267,7 +266,7 @@ class Session:
             case Follow():
                 await self._follow(request.on)
             case Reinstate():
-                await self._reinstate()
+                await self._reinstate(request)
             case Save() | Revert():
                 await self._use_file(request)
             case Undo() | Travel():
@@ -369,6 +368,10 @@ class Session:
         kept = await self._live.steer(request)
         if kept is not None:
             design, generation = kept
+            if design.closed.to_file() == self.design.to_file():
+                self._live.forget()
+                self._take_design()
+                return
             label = f"Evolve live, {generation} generation{'' if generation == 1 else 's'}"
             try:
                 await self.act(lambda: (commands.whole(self.design, design, label), []))
@@ -446,8 +449,8 @@ class Session:
         if self._live.live is not None:
             raise InputError("the net evolves; keep or discard what it grew first")
         values = {"cell_weights": self._live.weights} | request.parameters
-        start = self._start_of(request)
-        await self.runs.start(start, values, self._in_thread)
+        net = await self._in_thread(lambda: self.pins.net(request.side))
+        await self.runs.start(net.design, values, self._in_thread)
         self._tell_other_run()
 
     async def _open_run(self, number: int) -> None:
@@ -463,13 +466,6 @@ class Session:
         for window in self._windows:
             window.generations = 0
         self._tell_runs()
-
-    def _start_of(self, request: Evolve) -> Design:
-        if not request.looked:
-            return self.design
-        if self._looking is None:
-            raise InputError("look at an individual first")
-        return self._looking.net.design
 
     async def _follow(self, on: bool) -> None:
         self.runs.following = on
@@ -490,10 +486,12 @@ class Session:
             self._looking = await self._in_thread(lambda: self.pins.looking(request))
         self._take_design()
 
-    async def _reinstate(self) -> None:
-        if self._looking is None:
-            raise InputError("look at an individual first")
-        net = self._looking.net
+    async def _reinstate(self, request: Reinstate) -> None:
+        if request.side == "design":
+            raise InputError("this is your design; look at an individual first")
+        if self._live.live is not None:
+            raise InputError("the net evolves; keep or discard what it grew first")
+        net = await self._in_thread(lambda: self.pins.net(request.side))
         # Without a place it is a pin, which may have a name of somebody's own.
         label = f"Take over {net.label if net.place is None else net.place.label.lower()}"
         self._looking, self.runs.following = None, False

@@ -77,7 +77,7 @@ export function LookingBanner() {
         className="button"
         onClick={() =>
           ask(
-            { type: "evolve", looked: true, parameters: changeableOf(run?.state.parameters ?? {}) },
+            { type: "evolve", side: shown, parameters: changeableOf(run?.state.parameters ?? {}) },
             "Starting the run",
           )
         }

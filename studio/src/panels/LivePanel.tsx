@@ -2,7 +2,13 @@
 import { Check, Eraser, Pause, Play, Sprout, X } from "lucide-react";
 import type { ReactNode } from "react";
 import { useMemo, useState } from "react";
-import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
+import {
+  PARAMETERS,
+  type ParameterName,
+  type Texts,
+  textOf,
+  valueSaid,
+} from "../document/parameters";
 import { inDigits } from "../document/scale";
 import { ask, askQuietly, store } from "../document/store";
 import { GROW, springsIn } from "../document/weights";
@@ -131,6 +137,7 @@ function Course({ live }: { live: LiveState }) {
   const last = live.points.at(-1);
   const own = useStudio((state) => state.document!.own);
   const still = standstill(live);
+  const limit = limitReached(live);
   return (
     <>
       <RunGraph rows={rowsOf(live)} of="differential" own={own.force_differential} />
@@ -140,11 +147,13 @@ function Course({ live }: { live: LiveState }) {
         <i className="swatch own" /> my design <b>{inDigits(own.force_differential, 4)}</b>
       </p>
       <p className="explain">
-        {still > PATIENCE
-          ? `No mutant was better in ${still < live.points.length ? still : `${still} or more`} generations; the parent stays. ${live.parameters.fitness === "differential" ? "Compared by spring utilization, nets may rise in differential while they become denser." : "Other parameters, or an anchor moved, set it going again."}`
-          : live.parameters.fitness === "suf"
-            ? "The differential rises while springs come, for they share the same pull; the best has the least rise for a spring."
-            : "The best has the least force differential, however many springs it has."}
+        {limit !== null
+          ? `The net has as many springs as are allowed (${limit.toLocaleString("en")}): denser mutants can't become parents. Raise “${PARAMETERS.max_springs.label}” under Parameters for more.`
+          : still > PATIENCE
+            ? `No mutant was better in ${still < live.points.length ? still : `${still} or more`} generations; the parent stays. ${live.parameters.fitness === "differential" ? "Compared by spring utilization, nets may rise in differential while they become denser." : "Other parameters, or an anchor moved, set it going again."}`
+            : live.parameters.fitness === "suf"
+              ? "The differential rises while springs come, for they share the same pull; the best has the least rise for a spring."
+              : "The best has the least force differential, however many springs it has."}
       </p>
       <Fact name="Generations" value={live.generation} digits={6} />
       <Fact name="Generations a second" value={live.rate} digits={3} />
@@ -155,6 +164,15 @@ function Course({ live }: { live: LiveState }) {
 
 /** Generations without a better mutant after which it is told. */
 const PATIENCE = 25;
+
+/** Share of the springs allowed from which on hardly a mutant of a parent is allowed. */
+const FULL = 0.98;
+
+/** The limit on springs, if it is what holds it back. */
+function limitReached({ points, parameters }: LiveState): number | null {
+  const most = parameters.max_springs as number | null;
+  return most !== null && (points.at(-1)?.springs ?? 0) >= FULL * most ? most : null;
+}
 
 /** Generations since the parent changed. */
 function standstill({ points }: LiveState): number {

@@ -240,7 +240,7 @@ function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
   const start = async () => {
     const begun = await send(
       "Starting the run",
-      (parameters) => ({ type: "evolve", looked: false, parameters }),
+      (parameters) => ({ type: "evolve", side: "design", parameters }),
       SET,
     );
     if (!begun) return;

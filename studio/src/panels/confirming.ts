@@ -1,19 +1,25 @@
 // What is told once it is done, with the way back: nets that are taken over, kept or discarded.
 import { toast } from "sonner";
+import { shownSide } from "../document/pins";
 import { ask, notify, store } from "../document/store";
 
 /** Makes what is looked at the design. */
 export async function takeOver(): Promise<void> {
-  const label = store.getState().document?.looking?.label ?? "";
-  const reply = await ask({ type: "reinstate" }, "Taking it over");
+  const { document } = store.getState();
+  const label = document?.looking?.label ?? "";
+  const reply = await ask({ type: "reinstate", side: shownSide(document) }, "Taking it over");
   if (reply) confirmAction(`Your design is now: ${label}`);
 }
 
 /** Makes the net that evolves live the design. */
 export async function keepGrown(): Promise<void> {
-  const generation = store.getState().live?.generation ?? 0;
+  const { live, document } = store.getState();
+  const generation = live?.generation ?? 0;
   const reply = await ask({ type: "live_evolve", what: "keep", parameters: {} }, "Keeping the net");
-  if (reply) confirmAction(`Your design is now what grew in ${generation} generations`);
+  if (!reply) return;
+  if (store.getState().document?.position === document?.position)
+    toast.message("Nothing better grew; your design is as it was", { id: "done" });
+  else confirmAction(`Your design is now what grew in ${generation} generations`);
 }
 
 /** Goes back to the design; what evolved live can be brought back. */

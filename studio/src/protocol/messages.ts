@@ -264,15 +264,15 @@ export interface Move {
   what: "run" | "pause" | "step" | "reset";
 }
 /**
- * Start a run from the design, with parameters; what is left out has its default.
+ * Start a run with parameters; what is left out has its default.
  */
 export interface Evolve {
   type: "evolve";
   id: number;
   /**
-   * Breed from what is looked at instead.
+   * The net that it starts from.
    */
-  looked: boolean;
+  side: string;
   parameters: {
     [k: string]: unknown;
   };
@@ -324,11 +324,12 @@ export interface Follow {
   on: boolean;
 }
 /**
- * Make what is looked at the design.
+ * Make a net the design. It is named, since what is shown may change while a run is followed.
  */
 export interface Reinstate {
   type: "reinstate";
   id: number;
+  side: string;
 }
 /**
  * Pin a net, so that it is at hand whatever becomes of its run.
@@ -336,10 +337,7 @@ export interface Reinstate {
 export interface Pin {
   type: "pin";
   id: number;
-  /**
-   * None: what is shown.
-   */
-  side: string | null;
+  side: string;
 }
 /**
  * Let a pinned net go.
