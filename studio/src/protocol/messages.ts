@@ -324,7 +324,7 @@ export interface Follow {
   on: boolean;
 }
 /**
- * Make a net the design. It is named, since what is shown may change while a run is followed.
+ * Make a net the design; it is named, since what is shown changes while a run is followed.
  */
 export interface Reinstate {
   type: "reinstate";
