@@ -77,11 +77,10 @@ def test_a_shallow_arch_snaps_at_its_limit_load(count: int, axial: float, rise: 
     # Both pieces and shallowness of the closed form are good to the second order.
     inexact = 1.5 * rise**2 + 6 / count**2
     low, high = 0.9, 1.1
-    while high - low > 1e-4:
+    while high - low > 2e-4:
         share = 0.5 * (low + high)
         network = arch(count, rise, share * published, axial)
-        # A link is as stiff as it is short, and positions round the same.
-        heights = solved(network, 1e-15 * count * axial).positions[:, 2]
+        heights = solved(network).positions[:, 2]
         if heights[count // 2] > 0:
             low = share
             np.testing.assert_allclose(heights, heights[::-1], atol=1e-3 * rise)
@@ -98,7 +97,7 @@ def test_a_shallow_arch_does_not_creep_off_its_saddle() -> None:
         (32, 0.2, 1e8, 1.5), (64, 0.1, 1e5, 1.02), (64, 0.1, 1e6, 1.02), (64, 0.2, 1e6, 1.07),
     ]:  # fmt: skip
         network = arch(count, rise, share * snap_load(rise, axial), axial)
-        result = solved(network, 1e-15 * count * axial)
+        result = solved(network)
         assert result.positions[count // 2, 2] < 0
         most = max(most, result.iterations)
     assert most < 150

@@ -7,8 +7,9 @@ use super::interior::{MOST_INTERIOR, interior};
 use super::linear::Linear;
 use super::mixed::{MOST_MIXED, mixed};
 use super::newton::{Change, Ended, Newton};
+use super::refinement::{is_coarse, refine};
 use super::stability::{may_be_unstable, pushes, way_off};
-use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
+use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, loads, unheld_node};
 use super::supports::Supports;
 use super::tangent::{Layout, along};
 use crate::network::Network;
@@ -102,6 +103,13 @@ impl Solver {
                 if lost { (network.positions.to_vec(), Status::Singular) } else { (positions, status) };
             Equilibrium { method, ..Equilibrium::at(network, positions, status, iterations) }
         };
+        let least_force = least_force_scale(network);
+        if is_coarse(result, least_force, settings.tolerance, settings.iterations) {
+            let Solver { supports, elements, layout, newton, .. } = self;
+            let hill = Hill { network, elements, supports, layout, least_force };
+            let loads = loads(network, &result.positions);
+            refine(hill, &mut newton.tangent, &loads, settings.tolerance, result);
+        }
         observe(Stage::Solve);
     }
 

@@ -150,7 +150,7 @@ fn restored(
 }
 
 /// Factors the exact tangent plus a share of what may make it indefinite; false if that is not positive definite.
-fn factor(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes], shift: f64) -> bool {
+pub(super) fn factor(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes], shift: f64) -> bool {
     let Hill { network, elements, supports, layout, .. } = hill;
     let springs = (0..network.springs.len()).map(|spring| {
         let along = along(network, spring, positions);
