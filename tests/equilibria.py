@@ -11,16 +11,16 @@ import springform as sf
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def solved(network: sf.Network, rounding: float = 0.0, **arguments: Any) -> sf.Equilibrium:
+def solved(network: sf.Network, *, least: float = 0.0, **arguments: Any) -> sf.Equilibrium:
     """The equilibrium, whose reactions balance the loads as forces and as moments.
 
-    `rounding` [N] is what rounding of the lengths of very stiff springs adds to their forces.
+    `least` [N] is what forces are measured by where springs carry next to none.
     """
     result = sf.solve(network, **arguments)
     assert result.converged, result.reason
     outer = result.loads + result.reactions
-    scale = max(np.abs(result.forces).max(), np.abs(result.loads).max())
-    allowed = (1e-9 * scale + rounding) * len(outer)
+    scale = max(np.abs(result.forces).max(), np.abs(result.loads).max(), least)
+    allowed = 1e-9 * scale * len(outer)
     assert np.abs(outer.sum(axis=0)).max() <= allowed
     reach = np.abs(result.positions).max()
     moment = np.cross(result.positions, outer).sum(axis=0)

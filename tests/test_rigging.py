@@ -362,6 +362,94 @@ def test_a_rod_goes_through_nodes_that_evolution_adds() -> None:
     assert sum(after.lengths or ()) == pytest.approx(sum(before.lengths or ()))
 
 
+STIFF: Data = {"bending_stiffness": 5.0, "axial_stiffness": 1e4}
+
+
+def of_mesh(
+    faces: list[list[int]],
+    anchored: tuple[int, ...],
+    rods: list[Data],
+    vertices: list[list[float]] | None = None,
+) -> sf.Design:
+    """A mesh whose vertices lie on a helix unless given, so that all edges have a length."""
+    if vertices is None:
+        turn = np.arange(max(map(max, faces)) + 1) / 3
+        vertices = np.column_stack([np.cos(turn), np.sin(turn), 0.2 * turn]).tolist()
+    anchors = [{"vertex": vertex, "position": vertices[vertex]} for vertex in anchored]
+    mesh = {"vertices": vertices, "faces": faces}
+    data = {"springform": 1, "framework": {"mesh": mesh, "anchors": anchors}, "rods": rods}
+    return sf.Design(design_file.from_data(data))
+
+
+def rod_nodes(design: sf.Design, number: int) -> list[str]:
+    return [design.nodes[node] for node in design.network().rods[number].nodes]
+
+
+def test_rods_run_along_the_rims_of_a_mesh() -> None:
+    """The rings of a cylinder, and the same faces as a mesh that knows of no rings."""
+    tube = sf.Design(design_file.from_data({"springform": 1, "framework": framework("quad")}))
+    faces = tube.mesh.faces.tolist()
+    paths = {f"{part}.{side}": path for part, side, path, closed in tube.mesh.borders if closed}
+    rims = sorted(
+        (sorted(path) for name, path in paths.items() if name in ("low.start", "high.end"))
+    )
+    rods = [{"along": f"rim.{number}"} | STIFF for number in (1, 2)]
+    start = dict(zip(tube.nodes, tube.network().positions.tolist(), strict=True))
+    vertices = [start[f"v{vertex}"] for vertex in range(tube.mesh.vertex_count)]
+    anchored = tuple(int(vertex) for vertex in np.flatnonzero(tube.network().fixed))
+    design = of_mesh(faces, anchored, rods, vertices)
+    design = design.edited([f"{face} subdivide 1 1 1 1" for face in range(3)])
+    for number, rim in enumerate(rims):
+        ring = design.network().rods[number]
+        keys = rod_nodes(design, number)
+        assert ring.closed
+        assert keys[0] == f"v{rim[0]}"
+        assert sorted(key for key in keys if key[0] == "v") == sorted(
+            f"v{vertex}" for vertex in rim
+        )
+    # With the nodes that subdividing adds, each once and on an edge of the rim.
+    assert len(rod_nodes(design, 0)) > len(rims[0])
+    assert design.solve().converged
+    saved = design_file.dump(design.to_file(), "toml")
+    assert 'along = "rim.1"' in saved
+
+
+def test_rods_run_along_vertices() -> None:
+    along_rim: Data = {"along": "rim.1"} | STIFF
+    strip = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]]
+    around = [0, 1, 2, 3, 7, 6, 5, 4, 0]
+    by_name = of_mesh(strip, (0, 3, 4), [along_rim])
+    by_number = of_mesh(strip, (0, 3, 4), [{"vertices": around} | STIFF])
+    assert by_name.network().rods == by_number.network().rods
+    np.testing.assert_array_equal(by_name.solve().positions, by_number.solve().positions)
+    across = of_mesh(strip, (0, 3, 4), [{"vertices": [4, 5, 1]} | STIFF]).network().rods[0]
+    assert (across.nodes, across.closed) == ([4, 5, 1], False)
+    # On a cylinder, too: a rod from ring to ring.
+    data = framework("quad")
+    tube = sf.Design(design_file.from_data({"springform": 1, "framework": data}))
+    edges = {frozenset(ends) for ends in tube.mesh.edges.tolist()}
+    first = tube.mesh.borders[0][2][0]
+    second = next(b for b in range(8, tube.mesh.vertex_count) if {first, b} in edges)
+    third = next(b for b in range(second + 1, tube.mesh.vertex_count) if {second, b} in edges)
+    post = tube.with_rod(vertices=[first, second, third], **STIFF).network().rods[0]
+    assert (len(post.nodes), post.closed) == (3, False)
+
+
+def test_what_is_no_rim_is_said() -> None:
+    strip = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]]
+    box = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    bow = [[0, 1, 2, 3], [3, 4, 5, 6]]
+    rod: Data = {"along": "rim.1"} | STIFF
+    for faces, along, problem in (
+        (strip, "rim.2", r'rods\[0\].along: no rim is called "rim.2"; did you mean rim.1'),
+        (strip, "trunk.start", r"rods\[0\].along: no rim is called"),
+        (box, "rim.1", r"rods\[0\].along: the mesh is closed and has no rims; give vertices"),
+        (bow, "rim.1", r"rods\[0\].along: the rims of the mesh meet at vertex 3; give vertices"),
+    ):
+        with pytest.raises(sf.DesignError, match=problem):
+            of_mesh(faces, (0, 2, 4), [rod | {"along": along}])
+
+
 # --- readings, results -------------------------------------------------------------------------
 
 

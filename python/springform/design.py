@@ -323,13 +323,14 @@ class Design:
         springs_section = file.springs.model_copy(update={"stiffness_factors": changed})
         return Design(file.model_copy(update={"springs": springs_section}), source=self._source)
 
-    def with_rod(self, along: str, **rod: Any) -> Design:
-        """Return the design with a rod along a boundary, by the keys of `rods`.
+    def with_rod(self, along: str | None = None, **rod: Any) -> Design:
+        """Return the design with a rod along a boundary, or `vertices`, by the keys of `rods`.
 
         Such as ``design.with_rod("tube.start", bending_stiffness=20.0, axial_stiffness=5e5)``.
         Raises `DesignError`: a key or value that a design file may not have.
         """
-        return self._with_section(("rods",), {"along": along, **rod})
+        place = {} if along is None else {"along": along}
+        return self._with_section(("rods",), place | rod)
 
     def with_load(self, force: Sequence[float], **place: Any) -> Design:
         """Return the design with a force [N] on a node: `node`, `vertex`, or `ring` and `index`.
@@ -454,7 +455,7 @@ class Design:
             _Sections(
                 file.springs.groups,
                 list(file.springs.stiffness_factors.items()),
-                file.rods,
+                _rods(file),
                 file.loads.nodes,
                 file.loads.pressures,
                 file.framework.anchors,
@@ -504,6 +505,19 @@ def save(design: Design, path: str | os.PathLike[str]) -> None:
     Raises `DesignError`: another kind of file. `WriteError`: the file can't be written.
     """
     design_file.save(design.to_file(), path)
+
+
+def _rods(file: DesignFile) -> tuple[Rod, ...]:
+    """Return the rods, those along rims of a mesh by their vertices."""
+    mesh = file.framework.mesh
+    if mesh is None:
+        return file.rods
+    return tuple(
+        rod
+        if rod.along is None
+        else rod.model_copy(update={"along": None, "vertices": mesh.rims()[rod.along]})
+        for rod in file.rods
+    )
 
 
 def _base_mesh(file: DesignFile) -> _core.BaseMesh:

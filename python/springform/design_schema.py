@@ -7,7 +7,9 @@ stays text here.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import (
@@ -17,6 +19,7 @@ from pydantic import (
     field_validator,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from .key_lines import KeyPath
 from .patch_schema import Gene
@@ -159,6 +162,36 @@ class Mesh(Section):
         if loose >= 0:
             raise fault(("vertices", loose), f"vertex {loose} is in no face; use it or remove it")
         return self
+
+    def rims(self) -> dict[str, tuple[int, ...]]:
+        """Return the vertices around every open rim, the first once more at the end, by its name:
+        `rim.1`, `rim.2` and so on in the order of their lowest vertices.
+
+        A rim starts at its lowest vertex, towards the lower of its neighbours. Raises a fault: rims
+        meet at a vertex.
+        """
+        faces_of = Counter(
+            frozenset(pair) for face in self.faces for pair in pairwise((*face, face[0]))
+        )
+        beside: dict[int, list[int]] = {}
+        for a, b in (sorted(edge) for edge, count in faces_of.items() if count == 1):
+            beside.setdefault(a, []).append(b)
+            beside.setdefault(b, []).append(a)
+        for vertex, others in sorted(beside.items()):
+            if len(others) != 2:
+                raise fault(
+                    (), f"the rims of the mesh meet at vertex {vertex}; give vertices instead"
+                )
+        found: dict[str, tuple[int, ...]] = {}
+        left = set(beside)
+        while left:
+            start = min(left)
+            rim = [start, min(beside[start])]
+            while rim[-1] != start:
+                rim.append(next(one for one in beside[rim[-1]] if one != rim[-2]))
+            found[f"rim.{len(found) + 1}"] = tuple(rim)
+            left -= set(rim)
+        return found
 
 
 class Boundary(NamedTuple):
@@ -467,7 +500,7 @@ class DesignFile(Section):
     springs: Springs = Springs()
     """What the springs are made of."""
     rods: Annotated[tuple[Rod, ...], Field(strict=False)] = ()
-    """Rods that bend, along boundaries."""
+    """Rods that bend, along boundaries or vertices."""
     loads: Loads = Loads()
     """What pulls and presses on the net, besides its springs' weight."""
     overrides: Overrides = Overrides()
@@ -518,7 +551,8 @@ class DesignFile(Section):
                     hint = nearest(name, parts)
                     raise fault((*path, at), f"no part is called {shown(name)}; {hint}")
         for number, rod in enumerate(self.rods):
-            _boundary(("rods", number, "along"), rod.along, boundaries)
+            if rod.along is not None:
+                self._check_rod(("rods", number, "along"), rod.along, boundaries)
         for number, load in enumerate(self.loads.nodes):
             if load.ring is not None and load.index is not None:
                 path = ("loads", "nodes", number)
@@ -528,6 +562,20 @@ class DesignFile(Section):
                     raise fault(
                         (*path, "index"), f"{load.index} is out of range; {load.ring} has {have}"
                     )
+
+    def _check_rod(self, path: KeyPath, along: str, boundaries: dict[str, Boundary]) -> None:
+        mesh = self.framework.mesh
+        if mesh is None:
+            _boundary(path, along, boundaries)
+            return
+        try:
+            rims = mesh.rims()
+        except PydanticCustomError as error:
+            raise fault(path, (error.context or {})["message"]) from None
+        if not rims:
+            raise fault(path, "the mesh is closed and has no rims; give vertices instead")
+        if along not in rims:
+            raise fault(path, f"no rim is called {shown(along)}; {nearest(along, rims)}")
 
 
 def _boundary(path: KeyPath, name: str, boundaries: dict[str, Boundary]) -> Boundary:

@@ -226,12 +226,17 @@ class Springs(Section):
 
 
 class Rod(Section):
-    """A rod that bends, through all nodes of the net along a boundary; it is no cord of the net."""
+    """A rod that bends, through all nodes of the net along a boundary, or along vertices; it is no
+    cord of the net."""
 
     name: Title | None = None
     """What the rod is called."""
-    along: str
-    """The boundary, such as `trunk.start`; on a ring the rod is closed."""
+    along: str | None = None
+    """The boundary, such as `trunk.start`, or `rim.1` of a mesh; on a ring or rim the rod is
+    closed."""
+    vertices: Annotated[tuple[Number, ...], Field(strict=False, min_length=3)] | None = None
+    """Base vertices instead, each joined to the next by an edge of the base mesh; the first once
+    more at the end closes the rod."""
     bending_stiffness: _NotNegative
     """EI [N m2], the same about all axes; the rod is straight without force."""
     axial_stiffness: _Positive
@@ -254,6 +259,16 @@ class Rod(Section):
     @model_validator(mode="after")
     def _check(self) -> Self:
         _check_section(self.diameter, self.area)
+        if self.along is None and self.vertices is None:
+            raise fault((), "runs along nothing; give along, or vertices")
+        if self.vertices is not None:
+            if self.along is not None:
+                raise fault(("vertices",), "cannot stand beside along; remove one of the two")
+            open_end = self.vertices[:-1]
+            if len(set(open_end)) < len(open_end) or self.vertices[-1] in open_end[1:]:
+                raise fault(
+                    ("vertices",), "has a vertex twice; only the first may stand at the end"
+                )
         return self
 
 

@@ -134,7 +134,7 @@ pub fn apertures(mesh: &BaseMesh, expression: &Expression, positions: &[Vector])
     mesh.borders()
         .iter()
         .map(|border| {
-            let outline: Vec<Vector> = nodes_along(mesh, expression, border)
+            let outline: Vec<Vector> = nodes_along(mesh, expression, &border.path, border.closed)
                 .into_iter()
                 .map(|at| positions[at.node as usize])
                 .collect();

@@ -267,10 +267,15 @@ impl Network<'_> {
 
     /// Force of a spring at a length [N], tension positive.
     pub fn force_at(&self, spring: usize, length: f64) -> f64 {
+        self.force_beyond(spring, length - self.rest_length[spring])
+    }
+
+    /// Force of a spring that is longer than its rest length by so much [N], tension positive.
+    pub fn force_beyond(&self, spring: usize, longer: f64) -> f64 {
         let (k, rest) = (self.stiffness[spring], self.rest_length[spring]);
         let stretched = match self.curve_of(spring) {
-            None => k * (length - rest),
-            Some(curve) => k * rest * curve.value((length - rest) / rest),
+            None => k * longer,
+            Some(curve) => k * rest * curve.value(longer / rest),
         };
         let elastic = self.force[spring] + stretched;
         match self.sense[spring] {

@@ -275,7 +275,7 @@ proptest! {
         let result = solve(&network, &Settings::default());
         prop_assert!(result.positions.iter().flatten().all(|value| value.is_finite()), "{:?}", result.status);
         let size = result.positions.iter().flatten().fold(1.0, |most: f64, value| most.max(value.abs()));
-        let holding = reactions(&network, &result.positions);
+        let holding = reactions(&network, &result.positions, &result.forces);
         for (node, &position) in result.positions.iter().enumerate() {
             let moved = subtract(position, network.positions[node]);
             let slide = network.slides.iter().find(|slide| slide.node as usize == node);

@@ -225,7 +225,8 @@ fn equilibrium_dict<'py>(
         }
     };
     let energies: Vec<f64> = network.spring_energies(&equilibrium.positions);
-    result.set_item("reactions", rows(py, equilibrium::reactions(network, &equilibrium.positions))?)?;
+    let reactions = equilibrium::reactions(network, &equilibrium.positions, &equilibrium.forces);
+    result.set_item("reactions", rows(py, reactions)?)?;
     result.set_item("loads", rows(py, equilibrium::loads(network, &equilibrium.positions))?)?;
     result.set_item("spring_energies", PyArray1::from_vec(py, energies))?;
     result.set_item("bending_moments", moments(py, network, &equilibrium.positions))?;

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use springform_mechanics::curve::Curve;
 use springform_mechanics::network::{Path, Sense};
 use springform_mechanics::rigging::{
-    Along, AnchorSupport, BorderRod, CellChoice, CellPressure, Hold, Law, Line, NodeLoad, Rest, Rigging,
+    Along, AnchorSupport, CellChoice, CellPressure, Hold, Law, Line, NodeLoad, PathRod, Rest, Rigging,
     SpringChoice, SpringGroup,
 };
 use springform_mechanics::vector::Vector;
@@ -63,7 +63,8 @@ enum Ratio {
 
 #[derive(FromPyObject)]
 struct Rod {
-    along: String,
+    along: Option<String>,
+    vertices: Option<Vec<u32>>,
     bending_stiffness: f64,
     axial_stiffness: f64,
     length: Option<f64>,
@@ -115,8 +116,10 @@ impl Sections {
             rigging.factors.push((pair, *factor));
         }
         for (number, rod) in self.rods.iter().enumerate() {
-            rigging.rods.push(BorderRod {
-                border: reader.border(&format!("rods[{number}].along"), &rod.along)?,
+            let (path, closed) = reader.path(&format!("rods[{number}]"), rod)?;
+            rigging.rods.push(PathRod {
+                path,
+                closed,
                 bending_stiffness: rod.bending_stiffness,
                 axial_stiffness: rod.axial_stiffness,
                 length: rod.length,
@@ -259,6 +262,32 @@ impl Reader<'_> {
             self.mesh.borders().iter().position(|border| border.part == part && border.side == side)
         });
         found.ok_or_else(|| refusal(key, format!("no boundary is called '{name}'")))
+    }
+
+    /// Base vertices along a rod, each once, and whether the last is followed by the first.
+    fn path(&self, key: &str, rod: &Rod) -> PyResult<(Vec<u32>, bool)> {
+        if let Some(name) = &rod.along {
+            let border = &self.mesh.borders()[self.border(&format!("{key}.along"), name)?];
+            return Ok((border.path.clone(), border.closed));
+        }
+        let mut path = rod.vertices.clone().unwrap_or_default();
+        let count = self.mesh.vertex_count();
+        for (at, &vertex) in path.iter().enumerate() {
+            let key = format!("{key}.vertices[{at}]");
+            if vertex >= count {
+                return Err(refusal(key, format!("there is no such vertex; there are {count}, from 0")));
+            }
+            let joined = |before: u32| self.mesh.edge_between(before, vertex).is_some();
+            if let Some(&before) = at.checked_sub(1).and_then(|before| path.get(before))
+                && !joined(before)
+            {
+                let problem = "are not joined by an edge of the base mesh; list all vertices on the way";
+                return Err(refusal(key, format!("vertices {before} and {vertex} {problem}")));
+            }
+        }
+        let closed = path.len() > 1 && path.first() == path.last();
+        path.truncate(path.len() - usize::from(closed));
+        Ok((path, closed))
     }
 
     fn places(&self, key: &str, addresses: &Option<Vec<String>>) -> PyResult<Option<Vec<Place>>> {

@@ -111,7 +111,7 @@ impl Elements {
             let along = subtract(vector(positions[b]), vector(positions[a]));
             let size = length(along);
             let force = network.force_at(spring as usize, size);
-            let pull = scale(along, force_density(network, spring as usize, size));
+            let pull = scale(along, force_density(network, spring as usize, size, force));
             (0..3).for_each(|axis| {
                 pulls[a][axis] += pull[axis];
                 pulls[b][axis] -= pull[axis];

@@ -113,7 +113,7 @@ impl Walk<'_> {
             if restored == MOST_RESTORED || !self.factor(&next, tensions) {
                 break;
             }
-            let mut moves = self.excess(&next, tensions);
+            let mut moves = excess(hill, &next, tensions);
             self.tangent.solve(hill.supports, &mut moves);
             next.iter_mut().zip(&moves).for_each(|(position, moved)| *position = sum(position, 1.0, moved));
         }
@@ -163,24 +163,24 @@ impl Walk<'_> {
         };
         (0..network.springs.len()).map(reached).collect()
     }
+}
 
-    /// Pulls of springs beyond given tensions.
-    fn excess(&self, positions: &[Lanes], tensions: &[f64]) -> Vec<Lanes> {
-        let network = self.hill.network;
-        let mut pulls = vec![[0.0; 4]; positions.len()];
-        for (spring, &[a, b]) in network.springs.iter().enumerate() {
-            let along = along(network, spring, positions);
-            let size = length(along);
-            let density =
-                if size > 0.0 { (network.force_at(spring, size) - tensions[spring]) / size } else { 0.0 };
-            for axis in 0..3 {
-                pulls[a as usize][axis] += density * along[axis];
-                pulls[b as usize][axis] -= density * along[axis];
-            }
+/// Pulls of springs beyond given tensions, one of a node.
+pub(super) fn excess(hill: Hill<'_>, positions: &[Lanes], tensions: &[f64]) -> Vec<Lanes> {
+    let network = hill.network;
+    let mut pulls = vec![[0.0; 4]; positions.len()];
+    for (spring, &[a, b]) in network.springs.iter().enumerate() {
+        let along = along(network, spring, positions);
+        let size = length(along);
+        let density =
+            if size > 0.0 { (network.force_at(spring, size) - tensions[spring]) / size } else { 0.0 };
+        for axis in 0..3 {
+            pulls[a as usize][axis] += density * along[axis];
+            pulls[b as usize][axis] -= density * along[axis];
         }
-        self.hill.supports.keep_free(&mut pulls);
-        pulls
     }
+    hill.supports.keep_free(&mut pulls);
+    pulls
 }
 
 /// Largest extent of the nodes along an axis [m].

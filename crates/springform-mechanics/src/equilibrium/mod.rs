@@ -7,6 +7,7 @@
 //!        ├ mixed       rods first: tensions that follow the step, which may be long
 //!        ├ interior    stiff and far-off nets: tensions as unknowns of their own
 //!        ├ stability   springs that push, rods: is it a rest that lasts, and where to if not
+//!        ├ refinement  stiff nets: the digits that rounding of positions takes
 //!        └ followers   around all of these: loads that follow the shape
 //! ```
 //!
@@ -22,6 +23,7 @@ mod interior;
 mod linear;
 mod mixed;
 mod newton;
+mod refinement;
 pub mod sensitivity;
 mod solver;
 mod stability;

@@ -7,6 +7,7 @@
 
 use super::descent::Hill;
 use super::elements::vector;
+use super::mixed::extent;
 use super::state::Settings;
 use super::tangent::{Tangent, along, links, own_bend_stiffness, own_stiffness, spring_tangent};
 use crate::network::Network;
@@ -21,6 +22,11 @@ const MOST_DAMPING: f64 = 1e12;
 
 /// Change of strain below which the energy of a curve is integrated and not a difference.
 const SHORT: f64 = 1e-3;
+
+/// Short damped steps in a row after which the exact tangent tells whether they creep off a saddle, where damping lets
+/// each go a few hundredths farther than the last; and how short, as a share of the extent of the net.
+const CREEPING: u32 = 10;
+const SHORT_STEP: f64 = 1e-3;
 
 /// Workspace of Newton's method.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -43,20 +49,26 @@ pub(super) enum Ended {
     Rounding,
     /// The energy falls no further and the tangent holds no step.
     Singular,
+    /// Steps creep where the exact tangent is indefinite.
+    Saddle,
     /// A number overflowed.
     Overflow,
 }
 
 impl Newton {
-    /// Moves positions by Newton steps, for `limit` steps at most; how it ended and the steps made.
+    /// Moves positions by Newton steps, for `limit` steps at most; how it ended and the steps made. Ends on saddles only if
+    /// it is to `leave_saddles` to others.
     pub(super) fn solve(
         &mut self,
         hill: Hill<'_>,
         positions: &mut Vec<Lanes>,
         settings: &Settings,
         limit: u32,
+        leave_saddles: bool,
     ) -> (Ended, u32) {
         let mut damping = 0.0;
+        let mut short_steps = 0;
+        let short = SHORT_STEP * extent(positions);
         let mut pulls = std::mem::take(&mut self.pulls);
         let (_, mut residual) = hill.look(positions, &mut pulls);
         let mut iterations = 0;
@@ -79,6 +91,14 @@ impl Newton {
             residual = next_residual;
             damping = if used > LEAST_DAMPING { 0.1 * used } else { 0.0 };
             iterations += 1;
+            let farthest = self.step.iter().map(|&step| length(vector(step))).fold(0.0, f64::max);
+            short_steps = if used > 0.0 && farthest < short { short_steps + 1 } else { 0 };
+            if leave_saddles && short_steps == CREEPING && residual > settings.tolerance {
+                if !self.aim(hill, positions, &pulls, 0.0) {
+                    break Ended::Saddle;
+                }
+                short_steps = 0;
+            }
         };
         self.pulls = pulls;
         (ended, iterations)

@@ -7,8 +7,9 @@ use super::interior::{MOST_INTERIOR, interior};
 use super::linear::Linear;
 use super::mixed::{MOST_MIXED, mixed};
 use super::newton::{Change, Ended, Newton};
+use super::refinement::{is_coarse, refine};
 use super::stability::{may_be_unstable, pushes, way_off};
-use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, unheld_node};
+use super::state::{Equilibrium, Method, Settings, Status, least_force_scale, loads, unheld_node};
 use super::supports::Supports;
 use super::tangent::{Layout, along};
 use crate::network::Network;
@@ -102,6 +103,13 @@ impl Solver {
                 if lost { (network.positions.to_vec(), Status::Singular) } else { (positions, status) };
             Equilibrium { method, ..Equilibrium::at(network, positions, status, iterations) }
         };
+        let least_force = least_force_scale(network);
+        if is_coarse(result, least_force, settings.tolerance, settings.iterations) {
+            let Solver { supports, elements, layout, newton, .. } = self;
+            let hill = Hill { network, elements, supports, layout, least_force };
+            let loads = loads(network, &result.positions);
+            refine(hill, &mut newton.tangent, &loads, settings.tolerance, result);
+        }
         observe(Stage::Solve);
     }
 
@@ -166,7 +174,7 @@ impl Solver {
         let mut positions = std::mem::take(&mut self.positions);
         parted(network, &self.supports, start, &mut positions);
         let (status, iterations, method) = if more.is_some() {
-            self.move_to_rest(network, settings, &mut positions, limit)
+            self.move_to_rest(network, settings, &mut positions, limit, false)
         } else {
             self.move_to_stable_rest(network, settings, &mut positions, limit)
         };
@@ -175,7 +183,8 @@ impl Solver {
         (moved, status, iterations, method)
     }
 
-    /// Moves to rest, and on from where rest is unstable, as a straight strut above its buckling load.
+    /// Moves to rest, and on from where rest is unstable, as a straight strut above its buckling load; on from saddles, too,
+    /// as a shallow arch that goes over sideways.
     fn move_to_stable_rest(
         &mut self,
         network: &Network<'_>,
@@ -183,26 +192,37 @@ impl Solver {
         positions: &mut Vec<Lanes>,
         limit: u32,
     ) -> (Status, u32, Method) {
-        let (mut status, mut iterations, mut method) = self.move_to_rest(network, settings, positions, limit);
+        let doubtful = may_be_unstable(network);
+        let (mut status, mut iterations, mut method) =
+            self.move_to_rest(network, settings, positions, limit, doubtful);
         loop {
-            let settled = matches!(status, Status::Converged | Status::Singular);
-            if !settled || !may_be_unstable(network) {
+            let settled = matches!(status, Status::Converged | Status::Singular | Status::UnstableRest);
+            if !settled || !doubtful {
                 return (status, iterations, method);
             }
             let Solver { supports, elements, layout, newton, .. } = self;
             let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
-            if !pushes(hill, positions, settings.tolerance) {
-                return (status, iterations, method);
-            }
-            let Some(mut moved) = way_off(hill, &mut newton.tangent, positions) else {
-                return (status, iterations, method);
+            let pushed = pushes(hill, positions, settings.tolerance);
+            let way = if pushed { way_off(hill, &mut newton.tangent, positions) } else { None };
+            let on_saddle = status == Status::UnstableRest;
+            let Some(mut moved) = way else {
+                if !on_saddle {
+                    return (status, iterations, method);
+                }
+                let left = limit - iterations;
+                let (next, steps, by) = self.move_to_rest(network, settings, positions, left, false);
+                (status, method) = (next, by);
+                iterations += steps;
+                continue;
             };
             if iterations >= limit {
-                return (Status::UnstableRest, iterations, method);
+                let status = if on_saddle { Status::IterationLimit } else { Status::UnstableRest };
+                return (status, iterations, method);
             }
             // The step off counts too, so that there is an end of it.
             iterations += 1;
-            let (next, steps, by) = self.move_to_rest(network, settings, &mut moved, limit - iterations);
+            let left = limit - iterations;
+            let (next, steps, by) = self.move_to_rest(network, settings, &mut moved, left, true);
             iterations += steps;
             if next == Status::Singular && status == Status::Converged {
                 return (Status::UnstableRest, iterations, method);
@@ -212,13 +232,15 @@ impl Solver {
         }
     }
 
-    /// The method that fits first, then the next where it does not get there.
+    /// The method that fits first, then the next where it does not get there; *unstable rest* if it is to `leave_saddles`
+    /// and comes to one.
     fn move_to_rest(
         &mut self,
         network: &Network<'_>,
         settings: &Settings,
         positions: &mut Vec<Lanes>,
         limit: u32,
+        leave_saddles: bool,
     ) -> (Status, u32, Method) {
         let Solver { supports, elements, layout, descent, newton, .. } = self;
         let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
@@ -235,9 +257,9 @@ impl Solver {
             iterations += mixed(hill, &mut newton.tangent, positions, settings.tolerance, patience);
         }
         let patience = PATIENCE.min(limit - iterations);
-        let (ended, steps) = newton.solve(hill, positions, settings, patience);
+        let (ended, steps) = newton.solve(hill, positions, settings, patience, leave_saddles);
         iterations += steps;
-        if ended == Ended::Converged || ended == Ended::Overflow || iterations >= limit {
+        if matches!(ended, Ended::Converged | Ended::Saddle | Ended::Overflow) || iterations >= limit {
             return (status(ended), iterations, Method::Newton);
         }
         let mut method = Method::Newton;
@@ -253,7 +275,7 @@ impl Solver {
             }
             let left = limit - iterations;
             let patience = if round == MOST_ROUNDS { left } else { PATIENCE.min(left) };
-            let (ended, steps) = newton.solve(hill, positions, settings, patience);
+            let (ended, steps) = newton.solve(hill, positions, settings, patience, leave_saddles);
             iterations += steps;
             if ended != Ended::Limit || iterations >= limit || round == MOST_ROUNDS {
                 return (status(ended), iterations, method);
@@ -266,6 +288,7 @@ impl Solver {
 fn status(ended: Ended) -> Status {
     match ended {
         Ended::Converged => Status::Converged,
+        Ended::Saddle => Status::UnstableRest,
         Ended::Limit | Ended::Rounding => Status::IterationLimit,
         Ended::Singular | Ended::Overflow => Status::Singular,
     }

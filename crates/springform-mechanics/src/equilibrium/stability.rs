@@ -3,16 +3,17 @@
 //! A straight strut above its buckling load is in balance, and Newton's steps end there: only the second change of the
 //! energy tells that it is no rest. Inverse iteration with the exact tangent, shifted until it is positive definite, finds
 //! the direction of least curvature (Wilkinson, "The algebraic eigenvalue problem", 1965), and the net goes along it as
-//! far as the energy falls.
+//! far as the energy falls. What turns on the way also stretches, by the square of the way, which hides the fall where links
+//! are stiff and the load is just above the one that buckles: every move gives back what it stretched.
 
 use super::descent::Hill;
 use super::elements::vector;
-use super::mixed::extent;
+use super::mixed::{excess, extent};
 use super::newton::Change;
 use super::tangent::{Tangent, along, links, moduli, own_bend_stiffness, own_stiffness, spring_tangent};
 use crate::network::{Network, Sense};
 use crate::sparse::Lanes;
-use crate::vector::length;
+use crate::vector::{dot, length};
 
 /// The least shift, as a share of what may make the tangent indefinite, and its factor from one to the next.
 const LEAST_SHIFT: f64 = 1e-10;
@@ -30,6 +31,9 @@ const INVERSE_STEPS: u32 = 40;
 /// Shortest and longest move off an unstable rest, as shares of the extent of the net; each is twice the last.
 const SHORTEST_MOVE: f64 = 1e-7;
 const LONGEST_MOVE: f64 = 0.1;
+
+/// Times that a move gives back what it stretched.
+const MOST_RESTORED: u32 = 2;
 
 /// Whether a net has anything that can make a rest unstable: springs that may push, or rods. A spring that pulls can't,
 /// nor can dead loads.
@@ -76,12 +80,21 @@ pub(super) fn way_off(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes]
         }
         way.iter_mut().flatten().for_each(|part| *part /= longest);
     }
-    lowest_along(hill, positions, &way)
+    lowest_along(hill, tangent, positions, &way)
 }
 
-/// The first low place along a direction, either way, if the energy falls at all.
-fn lowest_along(hill: Hill<'_>, positions: &[Lanes], way: &[Lanes]) -> Option<Vec<Lanes>> {
+/// The first low place along a direction, either way, if the energy falls at all; the tangent is factored with its shift.
+fn lowest_along(
+    hill: Hill<'_>,
+    tangent: &mut Tangent,
+    positions: &[Lanes],
+    way: &[Lanes],
+) -> Option<Vec<Lanes>> {
     let extent = extent(positions);
+    let network = hill.network;
+    let tensions: Vec<f64> = (0..network.springs.len())
+        .map(|spring| network.force_at(spring, length(along(network, spring, positions))))
+        .collect();
     let mut lowest: Option<(f64, Vec<Lanes>)> = None;
     let mut share = SHORTEST_MOVE;
     while share <= LONGEST_MOVE {
@@ -89,8 +102,17 @@ fn lowest_along(hill: Hill<'_>, positions: &[Lanes], way: &[Lanes]) -> Option<Ve
             let step =
                 |(position, way): (&Lanes, &Lanes)| std::array::from_fn(|at| position[at] + size * way[at]);
             let mut moved: Vec<Lanes> = positions.iter().zip(way).map(step).collect();
-            hill.supports.put_back(hill.network, &mut moved);
-            (Change::new(hill, positions, &moved), moved)
+            hill.supports.put_back(network, &mut moved);
+            let mut lowest = (Change::new(hill, positions, &moved), moved);
+            for _ in 0..MOST_RESTORED {
+                let moved = restored(hill, tangent, way, &lowest.1, &tensions);
+                let change = Change::new(hill, positions, &moved);
+                if change.energy >= lowest.0.energy {
+                    break;
+                }
+                lowest = (change, moved);
+            }
+            lowest
         });
         let [one, other] = moved;
         let (change, moved) = if other.0.energy < one.0.energy { other } else { one };
@@ -105,8 +127,30 @@ fn lowest_along(hill: Hill<'_>, positions: &[Lanes], way: &[Lanes]) -> Option<Ve
     lowest.map(|(_, moved)| moved)
 }
 
+/// Positions that have given back what springs were stretched beyond their tensions, without a move along the way.
+fn restored(
+    hill: Hill<'_>,
+    tangent: &mut Tangent,
+    way: &[Lanes],
+    positions: &[Lanes],
+    tensions: &[f64],
+) -> Vec<Lanes> {
+    let mut moves = excess(hill, positions, tensions);
+    tangent.solve(hill.supports, &mut moves);
+    let product =
+        |a: &[Lanes], b: &[Lanes]| -> f64 { a.iter().zip(b).map(|(&a, &b)| dot(vector(a), vector(b))).sum() };
+    let share = product(&moves, way) / product(way, way);
+    let mut restored: Vec<Lanes> = positions
+        .iter()
+        .zip(moves.iter().zip(way))
+        .map(|(position, (moved, way))| std::array::from_fn(|at| position[at] + moved[at] - share * way[at]))
+        .collect();
+    hill.supports.put_back(hill.network, &mut restored);
+    restored
+}
+
 /// Factors the exact tangent plus a share of what may make it indefinite; false if that is not positive definite.
-fn factor(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes], shift: f64) -> bool {
+pub(super) fn factor(hill: Hill<'_>, tangent: &mut Tangent, positions: &[Lanes], shift: f64) -> bool {
     let Hill { network, elements, supports, layout, .. } = hill;
     let springs = (0..network.springs.len()).map(|spring| {
         let along = along(network, spring, positions);

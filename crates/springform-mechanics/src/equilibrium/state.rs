@@ -142,17 +142,18 @@ impl Equilibrium {
 /// Force out of balance at every node [N]; zero along the ways that supports hold.
 pub fn residuals(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
     let supports = Supports::from(network);
-    let mut residuals = unbalanced(network, positions);
+    let mut residuals = unbalanced(network, positions, &network.forces(positions));
     for (node, residual) in residuals.iter_mut().enumerate() {
         *residual = supports.free_part(node, *residual);
     }
     residuals
 }
 
-/// Force that holds every node [N]; zero along the ways that are free.
-pub fn reactions(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+/// Force that holds every node [N] under the forces of the springs [N], which may have more digits than the positions give
+/// them; zero along the ways that are free.
+pub fn reactions(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> Vec<Vector> {
     let supports = Supports::from(network);
-    let mut reactions = unbalanced(network, positions);
+    let mut reactions = unbalanced(network, positions, forces);
     for (node, reaction) in reactions.iter_mut().enumerate() {
         // Not −0 where nothing holds.
         *reaction = subtract([0.0; 3], supports.held_part(node, *reaction));
@@ -166,12 +167,12 @@ pub fn loads(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
 }
 
 /// Pull of springs, rods and loads at every node [N].
-fn unbalanced(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
+fn unbalanced(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> Vec<Vector> {
     let mut sums = loads_at(network, positions);
-    for (spring, &[a, b]) in network.springs.iter().enumerate() {
+    for (spring, (&[a, b], &force)) in network.springs.iter().zip(forces).enumerate() {
         let (a, b) = (a as usize, b as usize);
         let along = subtract(positions[b], positions[a]);
-        let pull = scale(along, force_density(network, spring, length(along)));
+        let pull = scale(along, force_density(network, spring, length(along), force));
         sums[a] = add(sums[a], pull);
         sums[b] = subtract(sums[b], pull);
     }
@@ -185,12 +186,12 @@ fn unbalanced(network: &Network<'_>, positions: &[Vector]) -> Vec<Vector> {
     sums
 }
 
-/// Force over length [N/m]; a spring of no length pulls nowhere.
-pub(super) fn force_density(network: &Network<'_>, spring: usize, length: f64) -> f64 {
+/// Force over length [N/m] of a spring of such a length and force; a spring of no length pulls nowhere.
+pub(super) fn force_density(network: &Network<'_>, spring: usize, length: f64, force: f64) -> f64 {
     if network.rest_length[spring] == 0.0 && network.force[spring] == 0.0 {
         return network.stiffness_at(spring, length);
     }
-    if length > 0.0 { network.force_at(spring, length) / length } else { 0.0 }
+    if length > 0.0 { force / length } else { 0.0 }
 }
 
 fn relative_residual(network: &Network<'_>, positions: &[Vector], forces: &[f64]) -> (Option<u32>, f64) {
@@ -220,13 +221,17 @@ const LEAST_FORCE: f64 = 1e-100;
 /// The least force that residuals are measured by [N]: a share of the loads, and of what springs with a rest length
 /// would carry if they were stretched by the span; rounding of positions hides what is less.
 pub(super) fn least_force_scale(network: &Network<'_>) -> f64 {
-    let loads = loads_at(network, &network.positions).into_iter().map(length).fold(LEAST_FORCE, f64::max);
     let stiffness = network.stiffness.iter().zip(network.rest_length.iter());
     let springs = stiffness.filter(|&(_, &rest)| rest > 0.0);
     let stretched = |span: f64| springs.map(|(k, rest)| k * rest.max(span)).fold(0.0, f64::max);
     // A rod reaches as far as it is long, however few of its nodes are held.
     let rod = network.rods.iter().map(|rod| rod.lengths.iter().sum()).fold(0.0, f64::max);
-    1e-6 * loads.max(stretched(span(network).max(rod)))
+    load_scale(network).max(1e-6 * stretched(span(network).max(rod)))
+}
+
+/// The share of the largest load that residuals are measured by at least [N].
+pub(super) fn load_scale(network: &Network<'_>) -> f64 {
+    1e-6 * loads_at(network, &network.positions).into_iter().map(length).fold(LEAST_FORCE, f64::max)
 }
 
 /// Largest extent of the held nodes along an axis [m].

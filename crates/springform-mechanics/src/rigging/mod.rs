@@ -14,7 +14,7 @@ mod rods;
 
 pub use choice::{Along, CellChoice, Line, SpringChoice};
 pub use groups::{Law, Properties, Rest, SpringGroup};
-pub use rods::BorderRod;
+pub use rods::PathRod;
 
 use choice::spring_between;
 
@@ -39,7 +39,7 @@ pub struct Rigging {
     /// Measured curves of the groups.
     pub curves: Vec<Curve>,
     /// Rods.
-    pub rods: Vec<BorderRod>,
+    pub rods: Vec<PathRod>,
     /// Dead loads on nodes.
     pub loads: Vec<NodeLoad>,
     /// Pressure on cells; all that hold a cell add up.

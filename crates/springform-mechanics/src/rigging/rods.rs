@@ -1,4 +1,4 @@
-//! Rods along borders: their links become springs of the network, behind those of the net.
+//! Rods along paths of base edges, borders most often: their links become springs of the network, behind those of the net.
 
 use super::RiggingError;
 use crate::border::{nodes_along, units_along};
@@ -8,11 +8,13 @@ use crate::vector::{length, subtract};
 use springform_topology::base_mesh::BaseMesh;
 use springform_topology::expression::Expression;
 
-/// A rod through all nodes that the net has on a border.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct BorderRod {
-    /// The border by its number in the base mesh.
-    pub border: usize,
+/// A rod through all nodes that the net has along a path.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PathRod {
+    /// Base vertices, each once, consecutive ones joined by an edge of the base mesh.
+    pub path: Vec<u32>,
+    /// The last vertex is followed by the first.
+    pub closed: bool,
     /// Bending stiffness EI [N m²].
     pub bending_stiffness: f64,
     /// Axial stiffness EA [N], of the unstressed length.
@@ -25,12 +27,11 @@ pub struct BorderRod {
     pub weight: f64,
 }
 
-impl BorderRod {
+impl PathRod {
     /// Number of the rod's links in a net.
     pub fn links(&self, mesh: &BaseMesh, expression: &Expression) -> usize {
-        let border = &mesh.borders()[self.border];
-        let count = nodes_along(mesh, expression, border).len();
-        if border.closed { count } else { count.saturating_sub(1) }
+        let count = nodes_along(mesh, expression, &self.path, self.closed).len();
+        if self.closed { count } else { count.saturating_sub(1) }
     }
 
     /// Adds the rod and its links to a network, and the links' weights per length [N/m].
@@ -42,17 +43,16 @@ impl BorderRod {
         network: &mut Network<'static>,
         weights: &mut Vec<f64>,
     ) -> Result<(), RiggingError> {
-        let border = &mesh.borders()[self.border];
         let refuse = |problem: &str| RiggingError { key: format!("rods[{number}]"), problem: problem.into() };
-        let found = nodes_along(mesh, expression, border);
+        let found = nodes_along(mesh, expression, &self.path, self.closed);
         if found.len() < 3 {
-            return Err(refuse("the net has fewer than three nodes along this boundary"));
+            return Err(refuse("the net has fewer than three nodes along this rod"));
         }
         let nodes: Vec<u32> = found.iter().map(|node| node.node).collect();
         let count = nodes.len();
-        let links = if border.closed { count } else { count - 1 };
+        let links = if self.closed { count } else { count - 1 };
         let ends = |link: usize| [nodes[link], nodes[(link + 1) % count]];
-        let whole = units_along(border);
+        let whole = units_along(&self.path, self.closed);
         let share = |link: usize| {
             let next = (link + 1) % count;
             let around = if next == 0 { whole } else { 0 };
@@ -65,9 +65,7 @@ impl BorderRod {
         let lengths: Vec<f64> =
             (0..links).map(|link| self.length.map_or_else(|| drawn(link), |all| all * share(link))).collect();
         if !lengths.iter().all(|length| *length > 0.0 && length.is_finite()) {
-            return Err(refuse(
-                "two nodes along this boundary are drawn in one place; give the rod's length",
-            ));
+            return Err(refuse("two nodes along this rod are drawn in one place; give the rod's length"));
         }
         for (link, &rest) in lengths.iter().enumerate() {
             network.springs.to_mut().push(ends(link));
@@ -80,7 +78,7 @@ impl BorderRod {
             }
             weights.push(self.weight);
         }
-        let closed = border.closed;
+        let closed = self.closed;
         let bending_stiffness = self.bending_stiffness;
         network.rods.to_mut().push(Rod { nodes, closed, lengths, bending_stiffness });
         Ok(())
