@@ -242,6 +242,7 @@ def test_a_window_is_measured_in_chromium(monkeypatch: pytest.MonkeyPatch) -> No
         part = found["three-cylinders", engine, "ms, 95 %"]
         assert part["springs"] == late["springs"]
         assert part["maximum"] > 0
+    assert found["cylinder", "page", "ms to select by a lasso"]["median"] > 0
     assert found["canopy", "page", "elements at most"]["maximum"] < 500
 
 

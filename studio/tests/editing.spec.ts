@@ -99,16 +99,16 @@ test("an anchor slides, and is dragged along an arm", async ({ page, visit }) =>
   expect(moved.position.slice(0, 2)).toEqual(before.position.slice(0, 2));
   expect(moved.position[2]).toBeGreaterThan(before.position[2] + 0.1);
 
-  await page.getByLabel("Support").selectOption("slides along z");
+  await page.getByLabel("Support").selectOption("xy");
   await expect.poll(async () => (await anchorOf("A7")).holds).toBe("xy");
   await converged(page);
   await expect(page.locator(".fact", { hasText: "is now at" })).toBeVisible();
-  await page.getByLabel("Support").selectOption("slides on a line");
+  await page.getByLabel("Support").selectOption("line");
   await page.getByRole("group", { name: "Direction of the line" }).getByLabel("x").fill("1");
   await page.getByRole("group", { name: "Direction of the line" }).getByLabel("x").press("Enter");
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await expect.poll(async () => (await anchorOf("A7")).line).toEqual([1, 0, 1]);
-  await page.getByLabel("Support").selectOption("fixed");
+  await page.getByLabel("Support").selectOption("xyz");
   await expect.poll(async () => (await anchorOf("A7")).line).toBe(null);
   await page.getByLabel("Support").selectOption("free");
   await expect.poll(async () => (await documentOf(page)).anchors.length).toBe(11);

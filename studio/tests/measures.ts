@@ -91,6 +91,35 @@ async function pull(page: Page, rounds: number, moves: number): Promise<Figures[
   return found;
 }
 
+/** Draws a lasso round the whole net; returns the time from the button's event until the page has drawn the cells [ms]. */
+async function lasso(page: Page): Promise<number> {
+  const { x, y, width, height } = (await page.locator("main.viewport canvas").boundingBox())!;
+  await page.locator("main.viewport canvas").focus();
+  await page.keyboard.press("Shift+L");
+  await page.mouse.move(x + 60, y + 60);
+  await page.mouse.down();
+  for (const [
+    across,
+    down,
+  ] of [[width - 60, 60], [width - 60, height - 60], [60, height - 60], [60, 80]]) // biome-ignore format: corners
+    await page.mouse.move(x + across, y + down, { steps: 10 });
+  await page.waitForTimeout(300);
+  const took = page.evaluate(
+    () =>
+      new Promise<number>((done) => {
+        const drawn = (event: Event) =>
+          requestAnimationFrame(() => setTimeout(() => done(performance.now() - event.timeStamp)));
+        addEventListener("pointerup", drawn, { once: true });
+      }),
+  );
+  await page.waitForTimeout(50);
+  await page.mouse.up();
+  const time = await took;
+  await expect(page.locator(".section h2").first()).toHaveText(/^[\d,]+ cells$/);
+  await page.keyboard.press("Escape");
+  return time;
+}
+
 test("figures of a window", async ({ page, open }) => {
   test.setTimeout(600_000);
   await page.addInitScript(watch);
@@ -108,6 +137,13 @@ test("figures of a window", async ({ page, open }) => {
       y: box.y + 100 + ((53 * (move + round)) % (box.height - 250)),
     }));
     hovers.push((await figures(page)).hovers);
+  }
+
+  const lassos: number[] = [];
+  // The first round warms up.
+  for (let round = 0; round <= wanted.rounds; round++) {
+    const time = await lasso(page);
+    if (round > 0) lassos.push(time);
   }
 
   await open(wanted.run);
@@ -137,6 +173,6 @@ test("figures of a window", async ({ page, open }) => {
     return { elements, longest: Math.max(0, ...tasks), frames: steps / seconds };
   }, wanted.moves);
   const chromium = page.context().browser()!.version();
-  const all = { chromium, pulled, large, hovers, gallery: { individuals, ...gallery } };
+  const all = { chromium, pulled, large, hovers, lassos, gallery: { individuals, ...gallery } };
   writeFileSync(wanted.out, JSON.stringify(all));
 });

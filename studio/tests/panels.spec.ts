@@ -1,6 +1,6 @@
 // Panels, keys and menus: all can be reached without a mouse, and by screen readers.
 import type { Page } from "@playwright/test";
-import { accessible, anchorPlace, converged, documentOf, expect, test } from "./studio";
+import { accessible, anchorPlace, cellAbove, converged, documentOf, expect, test } from "./studio";
 
 test("no panel has serious findings of axe, dark or light", async ({ page, open }) => {
   await open();
@@ -33,7 +33,7 @@ async function states(page: Page): Promise<void> {
   await page.getByRole("tab", { name: "Net" }).click();
   const anchor = await anchorPlace(page, "A4");
   await page.mouse.click(anchor.x, anchor.y);
-  await page.getByLabel("Support").selectOption("slides in a plane");
+  await page.getByLabel("Support").selectOption("plane");
   await accessible(page);
   await page.getByRole("button", { name: "Finer: trunk" }).hover();
   await page.locator(".preview-card").waitFor();
@@ -96,3 +96,50 @@ test("commands are found by name, and the menu by the right button", async ({ pa
   await page.getByRole("button", { name: "Start", exact: true }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(0);
 });
+
+test("every option says what it means, in the list and before it is taken", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const silent = () =>
+    page
+      .locator("option")
+      .evaluateAll((all) =>
+        all
+          .filter((option) => !option.querySelector("small")?.textContent)
+          .map((option) => option.textContent),
+      );
+  let options = 0;
+  await page.mouse.click(...(await onCell(page)));
+  for (const panel of ["Net", "Framework", "Evolve", "Graft"]) {
+    await page.getByRole("tab", { name: panel }).click();
+    expect(await silent()).toEqual([]);
+    options += await page.locator("option").count();
+  }
+  expect(options).toBeGreaterThan(40);
+  await page.getByRole("tab", { name: "Net" }).click();
+  const filter = page.getByLabel("Filter method");
+  await filter.focus();
+  await page.keyboard.press("Space");
+  const told = filter.locator("option", { hasText: "Extensible" }).locator("small");
+  await expect(told).toBeVisible();
+  await expect(told).toHaveText(/^Cells of any levels meet/);
+  // It stands below the name, and within the list.
+  const [name, words] = await Promise.all([
+    filter.locator("option", { hasText: "Extensible" }).locator("span").first().boundingBox(),
+    told.boundingBox(),
+  ]);
+  expect(words!.y).toBeGreaterThanOrEqual(name!.y + name!.height - 1);
+  await accessible(page);
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Enter");
+  await expect(filter).toHaveValue("extensible");
+  await expect(filter.locator("button")).toHaveText("Extensible (QeT)");
+  await expect(page.locator(".preview-card")).toContainText("Extensible");
+});
+
+async function onCell(page: Page): Promise<[number, number]> {
+  const { x, y } = await cellAbove(page, await anchorPlace(page, "A4"));
+  return [x, y];
+}

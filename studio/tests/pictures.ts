@@ -211,7 +211,7 @@ test("supports", async ({ page, open }) => {
   await page.mouse.click(anchor.x, anchor.y);
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("t");
-  await page.getByLabel("Support").selectOption("slides on a line");
+  await page.getByLabel("Support").selectOption("line");
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.mouse.move(640, 700);
   await page.waitForTimeout(1500);

@@ -1,5 +1,9 @@
 // Selecting cells by mouse, by name and in the tree; what is selected is edited as one action.
 import type { Page } from "@playwright/test";
+import * as THREE from "three";
+import type { Motion } from "../src/document/motion";
+import type { Net } from "../src/document/net";
+import { Projection, pick } from "../src/viewport/picking";
 import { pictureOf } from "./picture";
 import {
   anchorPlace,
@@ -107,6 +111,69 @@ test("a box selects what is seen, and with Ctrl what is behind", async ({ page, 
   await page.keyboard.up("Control");
   expect(await selected(page, front)).toBe(cells);
   await divides(page, cells);
+});
+
+test("the cell under a point is the one in front of all that lie there", () => {
+  let seed = 5;
+  const random = () => {
+    seed = (Math.imul(seed, 1103515245) + 12345) >>> 0;
+    return seed / 2 ** 32;
+  };
+  const camera = new THREE.PerspectiveCamera(40, 1.25, 0.1, 100);
+  camera.position.set(0, -6, 0.5);
+  camera.lookAt(0, 0, 0);
+  camera.updateMatrixWorld();
+  const [width, height] = [800, 640];
+  // Many small cells, and few that are larger than the canvas.
+  for (const [count, size] of [
+    [1500, 0.1],
+    [40, 1.5],
+    [6, 9],
+  ]) {
+    const places: number[] = [];
+    for (let cell = 0; cell < count; cell++) {
+      const [x, y, z] = [0, 0, 0].map(() => 4 * (random() - 0.5));
+      for (const [dx, dz] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) // biome-ignore format: corners
+        places.push(
+          x + dx * size * random(),
+          y + size * (random() - 0.5),
+          z + dz * size * random(),
+        );
+    }
+    const net = {
+      addresses: Array.from({ length: count }, (_, cell) => String(cell)),
+      boundaries: {
+        starts: Int32Array.from({ length: count + 1 }, (_, cell) => 4 * cell),
+        items: Int32Array.from({ length: 4 * count }, (_, node) => node),
+      },
+    } as Net;
+    const motion = { positions: Float32Array.from(places) } as Motion;
+    const projection = new Projection({ motion, camera, width, height, section: null });
+    const { places: seen } = projection;
+    const slow = (x: number, y: number) => {
+      let [best, front] = [-1, 1];
+      for (let cell = 0; cell < count; cell++) {
+        const corners = [0, 1, 2, 3].map((corner) => 3 * (4 * cell + corner));
+        if (corners.some((at) => seen[at + 2] > 1)) continue;
+        const crossed = corners.filter((a, corner) => {
+          const b = corners[(corner + 1) % 4];
+          const [ax, ay, bx, by] = [seen[a], seen[a + 1], seen[b], seen[b + 1]];
+          return ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax;
+        });
+        const depth = corners.reduce((sum, at) => sum + seen[at + 2] / 4, 0);
+        if (crossed.length % 2 && depth < front) [best, front] = [cell, depth];
+      }
+      return best < 0 ? null : best;
+    };
+    let hits = 0;
+    for (let look = 0; look < 400; look++) {
+      const [x, y] = [width * random(), height * random()];
+      const found = pick(net, projection, x, y, { cells: true })?.row ?? null;
+      expect(found).toBe(slow(x, y));
+      hits += found === null ? 0 : 1;
+    }
+    expect(hits).toBeGreaterThan(10);
+  }
 });
 
 test("the tree of cells and the view show the same", async ({ page, visit }) => {

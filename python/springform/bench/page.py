@@ -153,6 +153,8 @@ def _large(case: str, net: str, found: Mapping[str, Any], chromium: str) -> Iter
     yield row("page", "ms to new positions, 95 %", late, "from the pointer's event on")
     picked = [_most(hovers) for hovers in found["hovers"]]
     yield row("page", "ms to pick, 95 %", picked, "until what lies under the pointer is told")
+    told = "from the button's event until the page's part of a picture of the cells is done"
+    yield row("page", "ms to select by a lasso", found["lassos"], told)
 
 
 def _gallery(case: str, springs: int, found: Mapping[str, Any], chromium: str) -> Iterator[Row]:

@@ -56,18 +56,30 @@ export function rangeOf(individuals: Individuals, axis: string): [number, number
 export interface Measure {
   id: string;
   name: string;
+  /** What it is, in words. */
+  explains: string;
   unit: string;
 }
 
 export const MEASURES: Measure[] = [
-  { id: "force_differential", name: "Force differential", unit: "" },
-  { id: "suf", name: "Spring utilization factor", unit: "" },
-  { id: "springs", name: "Springs", unit: "" },
-  { id: "force_max", name: "Largest force", unit: "N" },
-  { id: "force_min", name: "Smallest force", unit: "N" },
-  { id: "total_length", name: "Total length", unit: "m" },
-  { id: "shortest_spring", name: "Shortest spring", unit: "m" },
-  { id: "generation", name: "Generation", unit: "" },
+  {
+    id: "force_differential",
+    name: "Force differential",
+    explains: "largest over smallest force",
+    unit: "",
+  },
+  {
+    id: "suf",
+    name: "Spring utilization factor",
+    explains: "rise of the differential for every spring that came",
+    unit: "",
+  },
+  { id: "springs", name: "Springs", explains: "how dense the net is", unit: "" },
+  { id: "force_max", name: "Largest force", explains: "of all springs, in N", unit: "N" },
+  { id: "force_min", name: "Smallest force", explains: "of all springs, in N", unit: "N" },
+  { id: "total_length", name: "Total length", explains: "of all springs, in m", unit: "m" },
+  { id: "shortest_spring", name: "Shortest spring", explains: "in m", unit: "m" },
+  { id: "generation", name: "Generation", explains: "when it was made", unit: "" },
 ];
 
 /** The sort key of a window. */

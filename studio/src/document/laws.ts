@@ -80,9 +80,9 @@ export const LAWS: Law[] = [
 
 /** What springs do, by number. */
 export const SENSES = [
-  { key: "tension", name: "pulls only" },
-  { key: "both", name: "pulls and pushes" },
-  { key: "compression", name: "pushes only" },
+  { key: "tension", name: "pulls only", explains: "a cord: it goes slack rather than push" },
+  { key: "both", name: "pulls and pushes", explains: "as a bar does" },
+  { key: "compression", name: "pushes only", explains: "a strut: it lets go rather than pull" },
 ] as const;
 
 /** The law of a spring. */

@@ -11,9 +11,13 @@ const STEPS: Record<PaletteId, string> = {
     "440154 48186a 472d7b 424086 3b528b 33638d 2c728e 26828e 21918c 1fa088 28ae80 3fbc73 5ec962 84d44b addc30 d8e219 fde725",
 };
 
-export const PALETTES: { id: PaletteId; name: string }[] = [
-  { id: "plasma", name: "Plasma" },
-  { id: "viridis", name: "Viridis" },
+export const PALETTES: { id: PaletteId; name: string; explains: string }[] = [
+  { id: "plasma", name: "Plasma", explains: "purple to yellow; even to the eye" },
+  {
+    id: "viridis",
+    name: "Viridis",
+    explains: "blue to yellow; told apart by colour-blind eyes, too",
+  },
 ];
 
 /** The part of a palette that can be seen on the ground; the strongest springs stand out most. */

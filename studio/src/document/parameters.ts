@@ -6,7 +6,7 @@ export interface Parameter {
   /** What it means, for whoever rests on it. */
   explanation: string;
   kind: "number" | "text" | "choice" | "check";
-  options?: { value: string; name: string }[];
+  options?: { value: string; name: string; explains: string }[];
   /** Whether it can be without: 0 as text. */
   limit?: boolean;
 }
@@ -48,11 +48,23 @@ const ALL = {
       "Which cells a mutation draws rather than others. Evenly by area makes up for it that each subdivision makes four cells of one.",
     kind: "choice",
     options: [
-      { value: "unweighted", name: "evenly" },
-      { value: "linear", name: "rather coarse ones" },
-      { value: "exponential", name: "evenly by area" },
-      { value: "deep", name: "rather fine ones" },
-      { value: "stress", name: "by their force" },
+      { value: "unweighted", name: "evenly", explains: "every cell alike" },
+      {
+        value: "linear",
+        name: "rather coarse ones",
+        explains: "the less a cell was subdivided, the more often",
+      },
+      {
+        value: "exponential",
+        name: "evenly by area",
+        explains: "a quarter as often with every subdivision",
+      },
+      {
+        value: "deep",
+        name: "rather fine ones",
+        explains: "the more a cell was subdivided, the more often",
+      },
+      { value: "stress", name: "by their force", explains: "where springs carry most" },
     ],
   },
   fitness: {
@@ -61,8 +73,16 @@ const ALL = {
       "What mutants are compared by. Spring utilization: how much the force differential rose for every spring that came since the start. Force differential: the largest force over the smallest, however many springs there are.",
     kind: "choice",
     options: [
-      { value: "suf", name: "spring utilization" },
-      { value: "differential", name: "force differential" },
+      {
+        value: "suf",
+        name: "spring utilization",
+        explains: "rise of the differential for every spring that came: denser nets",
+      },
+      {
+        value: "differential",
+        name: "force differential",
+        explains: "largest over smallest force: the evenest net, dense or not",
+      },
     ],
   },
   selection: {
@@ -71,8 +91,16 @@ const ALL = {
       "Always gives way: the best mutant is the next parent even if it is worse than its own, which leads out of dead ends, and away from good nets. Stays while it is best: only a better mutant replaces it.",
     kind: "choice",
     options: [
-      { value: "comma", name: "always gives way" },
-      { value: "plus", name: "stays while it is best" },
+      {
+        value: "comma",
+        name: "always gives way",
+        explains: "to the best mutant, even a worse one: out of dead ends",
+      },
+      {
+        value: "plus",
+        name: "stays while it is best",
+        explains: "only a better mutant takes its place",
+      },
     ],
   },
   symmetry: {

@@ -16,6 +16,8 @@ export type QuantityId =
 export interface Quantity {
   id: QuantityId;
   name: string;
+  /** What it is, in words. */
+  explains: string;
   symbol: string;
   unit: string;
   formula: string;
@@ -28,6 +30,8 @@ export interface Quantity {
 export interface Kind {
   id: QuantityId;
   name: string;
+  /** What it is, in words. */
+  explains: string;
   values(net: Net): Uint8Array;
   /** Names of the kinds by number. */
   names(net: Net): string[];
@@ -37,6 +41,7 @@ export const QUANTITIES: Quantity[] = [
   {
     id: "force",
     name: "Force",
+    explains: "what a spring pulls with",
     symbol: "F",
     unit: "N",
     formula: "tension positive",
@@ -45,6 +50,7 @@ export const QUANTITIES: Quantity[] = [
   {
     id: "density",
     name: "Force density",
+    explains: "force for each metre of its length",
     symbol: "q",
     unit: "N/m",
     formula: "q = F / L",
@@ -56,6 +62,7 @@ export const QUANTITIES: Quantity[] = [
   {
     id: "length",
     name: "Length",
+    explains: "as long as it is now",
     symbol: "L",
     unit: "m",
     formula: "L between the end nodes",
@@ -64,6 +71,7 @@ export const QUANTITIES: Quantity[] = [
   {
     id: "strain",
     name: "Strain",
+    explains: "how far it is stretched beyond its unstressed length",
     symbol: "ε",
     unit: "",
     formula: "ε = (L − L0) / L0",
@@ -79,6 +87,7 @@ export const QUANTITIES: Quantity[] = [
   {
     id: "stress",
     name: "Stress",
+    explains: "force on its cross-section",
     symbol: "σ",
     unit: "N/mm²",
     formula: "σ = F / A",
@@ -97,6 +106,7 @@ export const KINDS: Kind[] = [
   {
     id: "level",
     name: "Level",
+    explains: "how often its cell was subdivided",
     values: (net) => net.springLevel,
     names: (net) =>
       Array.from(
@@ -107,10 +117,17 @@ export const KINDS: Kind[] = [
   {
     id: "type",
     name: "Cell type",
+    explains: "type of the finest cell that holds it",
     values: (net) => springTypes(net).numbers,
     names: (net) => springTypes(net).names,
   },
-  { id: "part", name: "Cylinder", values: (net) => net.springPart, names: (net) => net.parts },
+  {
+    id: "part",
+    name: "Cylinder",
+    explains: "part of the framework that it lies on",
+    values: (net) => net.springPart,
+    names: (net) => net.parts,
+  },
 ];
 
 export function quantityOf(id: QuantityId): Quantity | undefined {

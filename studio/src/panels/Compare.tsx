@@ -13,8 +13,9 @@ import { labelOfSide, pinOfSide, type Side, shownSide, togglePin } from "../docu
 import { QUANTITIES, type QuantityId } from "../document/quantities";
 import { inDigits, scaleOf, valueAt } from "../document/scale";
 import { changeColour } from "../document/store";
-import type { Compared, ComparedNet } from "../protocol/messages";
-import { Choice, IconButton, Section } from "./parts";
+import type { Compared, ComparedNet, PinState } from "../protocol/messages";
+import { quantityOption } from "./Legend";
+import { Choice, IconButton, type Option, Section } from "./parts";
 import { useComparing, useStudio } from "./use";
 
 const LETTERS = ["A", "B"] as const;
@@ -75,7 +76,7 @@ function Heading({ at, side }: { at: 0 | 1; side: Side }) {
 }
 
 /** What can stand on a side: the design, what is shown, pins, and what stands there. */
-function useSides(side: Side): { value: Side; name: string }[] {
+function useSides(side: Side): Option<Side>[] {
   const pins = useStudio((state) => state.pins);
   const shown = useStudio((state) => shownSide(state.document));
   const both = useComparing((state) => state.sides);
@@ -90,8 +91,16 @@ function useSides(side: Side): { value: Side; name: string }[] {
     return [...new Set(all)].map((value) => ({
       value,
       name: `${value.startsWith("pin/") ? "Pinned: " : ""}${labelOfSide(pins, value)}`,
+      explains: explained(pins, value),
     }));
   }, [pins, shown, side, both]);
+}
+
+function explained(pins: PinState[], side: Side): string {
+  const pin = pins.find(({ number }) => side === `pin/${number}`);
+  if (pin)
+    return `${pin.figures.springs.toLocaleString("en")} springs, differential ${inDigits(pin.figures.force_differential)}`;
+  return side === "design" ? "as it is now" : "of the run, as it was made";
 }
 
 /** One scale for both nets. */
@@ -114,7 +123,7 @@ function SharedLegend() {
         label="Colour both nets by"
         hidden
         value={quantity.id}
-        options={options.map(({ id, name }) => ({ value: id, name }))}
+        options={options.map(quantityOption)}
         onTake={(by: QuantityId) => changeColour({ by })}
       />
       <div>

@@ -85,8 +85,8 @@ export function FrameworkPanel() {
             label="Cells lie"
             value={draft.grid}
             options={[
-              { value: "quad", name: "in rows (quad)" },
-              { value: "dia", name: "as diamonds (dia)" },
+              { value: "quad", name: "in rows (quad)", explains: "along and around the cylinders" },
+              { value: "dia", name: "as diamonds (dia)", explains: "springs run slantwise" },
             ]}
             onTake={(grid) => set({ grid })}
           />
@@ -285,7 +285,13 @@ function ArcFields({
         label={`Ring of the ${name}`}
         hidden
         value={arc.ring}
-        options={known.map((ring) => ({ value: ring, name: ring }))}
+        options={known.map((ring) => ({
+          value: ring,
+          name: ring,
+          explains: rings.includes(ring)
+            ? "an end of a cylinder, or a side of a sheet"
+            : "not there",
+        }))}
         onTake={(ring) => onTake({ ...arc, ring })}
       />
       <NumberField

@@ -17,7 +17,7 @@ import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
 import { inDigits } from "../document/scale";
 import { toggleLock } from "./graftCommands";
-import { Choice, IconButton, NameField, Section } from "./parts";
+import { Choice, IconButton, NameField, type Option, Section } from "./parts";
 import { useStudio } from "./use";
 
 export function useGrafting<T>(what: (state: Grafting) => T): T {
@@ -45,10 +45,20 @@ function Copying() {
   const [from, setFrom] = useState("");
   const [typed, setTyped] = useState("");
   const options = [
-    ...anchors.map((name) => ({ value: `anchor ${name}`, name: `anchor ${name}` })),
-    { value: "free", name: "any cell" },
+    ...anchors.map((name) => ({
+      value: `anchor ${name}`,
+      name: `anchor ${name}`,
+      explains: "it is set round other anchors as it lies round this one",
+    })),
+    { value: "free", name: "any cell", explains: "it is set on any cell that it fits" },
     ...(count
-      ? [{ value: "seed", name: `cell ${topLevel(selection.keys.at(-1)!)}, chosen last` }]
+      ? [
+          {
+            value: "seed",
+            name: `cell ${topLevel(selection.keys.at(-1)!)}, chosen last`,
+            explains: "this cell comes to lie on the one that is clicked",
+          },
+        ]
       : []),
   ];
   const seen = options.some(({ value }) => value === from) ? from : options[0].value;
@@ -232,10 +242,14 @@ function Tiles({ patch }: { patch: PatchEntry }) {
   );
 }
 
-const PLACES: { value: Place; name: string }[] = [
-  { value: "one", name: "one place" },
-  { value: "orbit", name: "all places alike (orbit)" },
-  { value: "anchors", name: "all anchors" },
+const PLACES: Option<Place>[] = [
+  { value: "one", name: "one place", explains: "the cell or the anchor that is clicked" },
+  {
+    value: "orbit",
+    name: "all places alike (orbit)",
+    explains: "where it is clicked, and at its images under the symmetries",
+  },
+  { value: "anchors", name: "all anchors", explains: "round every anchor where it fits" },
 ];
 
 function Setting() {

@@ -17,14 +17,20 @@ import {
   formulaText,
   KINDS,
   QUANTITIES,
+  type Quantity,
   type QuantityId,
   quantityOf,
 } from "../document/quantities";
 import { inDigits, type RangeMode, valueAt } from "../document/scale";
 import { changeColour } from "../document/store";
 import { largestReaction } from "../viewport/arrows";
-import { Choice, Hint, NumberField } from "./parts";
+import { Choice, Hint, NumberField, type Option } from "./parts";
 import { useCalmMotion, useStudio } from "./use";
+
+/** A quantity as a choice of what colours show. */
+export function quantityOption({ id, name, explains, unit }: Quantity): Option<QuantityId> {
+  return { value: id, name, explains: unit ? `${explains}, in ${unit}` : explains };
+}
 
 export function Legend() {
   const motion = useCalmMotion();
@@ -49,9 +55,11 @@ export function Legend() {
           hidden
           value={colour.by}
           options={[
-            ...QUANTITIES.filter(({ id, applies }) => id === colour.by || !applies || applies(net)),
-            ...KINDS,
-          ].map(({ id, name }) => ({ value: id, name }))}
+            ...QUANTITIES.filter(
+              ({ id, applies }) => id === colour.by || !applies || applies(net),
+            ).map(quantityOption),
+            ...KINDS.map(({ id, name, explains }) => ({ value: id, name, explains })),
+          ]}
           onTake={(by: QuantityId) => changeColour({ by })}
         />
         {quantity && <ScaleSettings legend={legend as ScaleLegend} />}
@@ -192,10 +200,14 @@ function Entry({
   );
 }
 
-const MODES: { value: RangeMode; name: string }[] = [
-  { value: "full", name: "All values" },
-  { value: "percentile", name: "5th to 95th percentile" },
-  { value: "fixed", name: "Fixed" },
+const MODES: Option<RangeMode>[] = [
+  { value: "full", name: "All values", explains: "from the least value to the largest" },
+  {
+    value: "percentile",
+    name: "5th to 95th percentile",
+    explains: "few extremes don’t take the colours from all others",
+  },
+  { value: "fixed", name: "Fixed", explains: "the same while the net changes" },
 ];
 
 function ScaleSettings({ legend }: { legend: ScaleLegend }) {
@@ -221,7 +233,7 @@ function ScaleSettings({ legend }: { legend: ScaleLegend }) {
           <Choice
             label="Palette"
             value={colour.palette}
-            options={PALETTES.map(({ id, name }) => ({ value: id, name }))}
+            options={PALETTES.map(({ id, name, explains }) => ({ value: id, name, explains }))}
             onTake={(palette) => changeColour({ palette })}
           />
           <Choice

@@ -1,5 +1,6 @@
 // The net as a whole: its figures, before and after the last action, stress-seeking and settings.
 import { useState } from "react";
+import { springsOfType } from "../document/cellTypes";
 import { figuresNow } from "../document/figures";
 import { ask } from "../document/store";
 import { selectExtreme } from "./commands";
@@ -119,6 +120,7 @@ function StressSeeking() {
         options={types.map(({ word, name }) => ({
           value: word,
           name: word === name ? word : `${word} ${name}`,
+          explains: springsOfType(word),
         }))}
         onTake={setKind}
       />

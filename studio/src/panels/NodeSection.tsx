@@ -11,16 +11,16 @@ const AXES = ["x", "y", "z"] as const;
 
 /** Ways to hold a node, by a word of their own. */
 const WAYS = [
-  { value: "free", name: "free" },
-  { value: "xyz", name: "fixed" },
-  { value: "xy", name: "slides along z" },
-  { value: "xz", name: "slides along y" },
-  { value: "yz", name: "slides along x" },
-  { value: "z", name: "slides level, in x and y" },
-  { value: "y", name: "slides in x and z" },
-  { value: "x", name: "slides in y and z" },
-  { value: "line", name: "slides on a line" },
-  { value: "plane", name: "slides in a plane" },
+  { value: "free", name: "free", explains: "nothing holds it" },
+  { value: "xyz", name: "fixed", explains: "held where it is: an anchor" },
+  { value: "xy", name: "slides along z", explains: "held in x and y" },
+  { value: "xz", name: "slides along y", explains: "held in x and z" },
+  { value: "yz", name: "slides along x", explains: "held in y and z" },
+  { value: "z", name: "slides level, in x and y", explains: "held at its height" },
+  { value: "y", name: "slides in x and z", explains: "held in y" },
+  { value: "x", name: "slides in y and z", explains: "held in x" },
+  { value: "line", name: "slides on a line", explains: "free along one direction of its own" },
+  { value: "plane", name: "slides in a plane", explains: "free across one direction of its own" },
 ] as const;
 type Way = (typeof WAYS)[number]["value"];
 

@@ -30,11 +30,13 @@ function Cells({ rows }: { rows: number[] }) {
   const forces = useStudio((state) => state.motion!.forces);
   const types = useStudio((state) => state.document!.cell_types);
   const kinds = new Set(rows.map((row) => plainType(net.types[row])));
-  const springs = new Set(rows.flatMap((row) => [...groupOf(net.own, row)]));
-  const inner = rows.reduce(
-    (sum, row) => groupOf(net.own, row).reduce((all, spring) => all + forces[spring], sum),
-    0,
-  );
+  const springs = new Set<number>();
+  let inner = 0;
+  for (const row of rows)
+    for (const spring of groupOf(net.own, row)) {
+      springs.add(spring);
+      inner += forces[spring];
+    }
   const kind = kinds.size === 1 ? [...kinds][0] : "";
   return (
     <Section title={rows.length === 1 ? `Cell ${net.addresses[rows[0]]}` : `${rows.length} cells`}>

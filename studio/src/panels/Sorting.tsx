@@ -31,7 +31,7 @@ export function SortControl({ label }: { label: string }) {
       <Choice
         label={label}
         value={sort.by}
-        options={MEASURES.map(({ id, name }) => ({ value: id, name }))}
+        options={MEASURES.map(({ id, name, explains }) => ({ value: id, name, explains }))}
         onTake={sortBy}
       />
       <IconButton

@@ -15,6 +15,7 @@ import { useStudio } from "./use";
 interface Scope {
   id: string;
   name: string;
+  explains: string;
   choice: { parts?: string[]; along?: string[]; pairs?: string[] };
   rows: number[];
 }
@@ -33,7 +34,7 @@ export function SpringEditor() {
       <Choice
         label="Of"
         value={scope.id}
-        options={scopes.map(({ id, name }) => ({ value: id, name }))}
+        options={scopes.map(({ id, name, explains }) => ({ value: id, name, explains }))}
         onTake={setWanted}
       />
       <LawForm
@@ -58,30 +59,64 @@ function scopesOf(net: Net, selection: State["selection"]): Scope[] {
     scopes.push({
       id: "selection",
       name: rows.length === 1 ? "the selected spring" : `the ${rows.length} selected springs`,
+      explains: "springs that are selected, and those of selected cells",
       choice: { pairs: rows.map((row) => springKey(net, row)) },
       rows,
     });
-  scopes.push({ id: "all", name: "all springs", choice: {}, rows: pick(() => true) });
+  scopes.push({
+    id: "all",
+    name: "all springs",
+    explains: "the whole net, also what comes later",
+    choice: {},
+    rows: pick(() => true),
+  });
   if (net.parts[0] !== "mesh")
     net.parts.forEach((part, number) => {
       scopes.push({
         id: `part ${part}`,
         name: part,
+        explains: "all springs of this part, also what comes later",
         choice: { parts: [part] },
         rows: pick((spring) => net.springPart[spring] === number),
       });
     });
   const ring = pick((spring) => net.springRing[spring] === 1);
   if (ring.length)
-    scopes.push({ id: "ring", name: "free rings", choice: { along: ["ring"] }, rows: ring });
+    scopes.push({
+      id: "ring",
+      name: "free rings",
+      explains: "springs along rings and rims that are not joined",
+      choice: { along: ["ring"] },
+      rows: ring,
+    });
   return scopes;
 }
 
+/** What differs among springs, and is left so. */
+const MIXED = {
+  value: "" as const,
+  name: "mixed",
+  explains: "these springs differ, and keep theirs",
+};
+
 const RESTS = {
-  rest_ratio: { name: "× drawn length", label: "L0", unit: "", value: "0.8" },
-  rest_length: { name: "length", label: "L0", unit: "m", value: "" },
+  rest_ratio: {
+    name: "× drawn length",
+    explains: "so many times as long as each spring was drawn",
+    label: "L0",
+    unit: "",
+    value: "0.8",
+  },
+  rest_length: {
+    name: "length",
+    explains: "the same for all of them",
+    label: "L0",
+    unit: "m",
+    value: "",
+  },
   prestress: {
     name: "from prestress",
+    explains: "such that each pulls with this force at its drawn length",
     label: "Force at the drawn length",
     unit: "N",
     value: "",
@@ -150,10 +185,11 @@ function LawForm({ scope }: { scope: Scope }) {
         label="Law"
         value={law}
         options={[
-          ...(law === "" ? [{ value: "" as const, name: "mixed" }] : []),
-          ...LAWS.filter(({ key }) => key !== "rod").map(({ key, name }) => ({
+          ...(law === "" ? [MIXED] : []),
+          ...LAWS.filter(({ key }) => key !== "rod").map(({ key, name, formula, explains }) => ({
             value: key as LawKey,
             name,
+            explains: `${formula}. ${explains}`,
           })),
         ]}
         onTake={takeLaw}
@@ -183,10 +219,16 @@ function LawForm({ scope }: { scope: Scope }) {
             label="Unstressed L0"
             value={restKey}
             options={[
-              { value: "" as const, name: rest === null ? "mixed" : `${inDigits(rest, 4)} m` },
+              rest === null
+                ? MIXED
+                : { value: "" as const, name: `${inDigits(rest, 4)} m`, explains: "as it is now" },
               ...(Object.keys(RESTS) as RestKey[])
                 .filter((key) => key !== "prestress" || chosen.key !== "curve")
-                .map((key) => ({ value: key, name: RESTS[key].name })),
+                .map((key) => ({
+                  value: key,
+                  name: RESTS[key].name,
+                  explains: RESTS[key].explains,
+                })),
             ]}
             onTake={(key) => {
               setRestKey(key);
@@ -208,8 +250,8 @@ function LawForm({ scope }: { scope: Scope }) {
         label="Sense"
         value={sense}
         options={[
-          ...(sense === "" ? [{ value: "" as const, name: "mixed" }] : []),
-          ...SENSES.map(({ key, name }) => ({ value: key, name })),
+          ...(sense === "" ? [MIXED] : []),
+          ...SENSES.map(({ key, name, explains }) => ({ value: key, name, explains })),
         ]}
         onTake={setSense}
       />

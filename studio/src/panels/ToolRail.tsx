@@ -15,6 +15,7 @@ import {
   Waypoints,
 } from "lucide-react";
 import type { ReactNode } from "react";
+import { springsOfType } from "../document/cellTypes";
 import { store, type ToolId } from "../document/store";
 import { commandOf } from "./commands";
 import { Choice, IconButton, Keys } from "./parts";
@@ -148,6 +149,7 @@ function BrushType() {
       options={types.map(({ word, name }) => ({
         value: word,
         name: word === name ? word : `${word} ${name}`,
+        explains: springsOfType(word),
       }))}
       onTake={(brushType) => store.setState({ brushType })}
     />

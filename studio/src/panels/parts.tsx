@@ -282,7 +282,14 @@ export function NameField({
   );
 }
 
-/** A choice from a list. */
+/** Something that can be chosen from a list, and what it means. */
+export interface Option<T extends string> {
+  value: T;
+  name: string;
+  explains: string;
+}
+
+/** A choice from a list. Browsers that can't lay out a list show each option and its explanation in one line. */
 export function Choice<T extends string>({
   label,
   value,
@@ -292,7 +299,7 @@ export function Choice<T extends string>({
 }: {
   label: string;
   value: T;
-  options: { value: T; name: string }[];
+  options: Option<T>[];
   onTake(value: T): void;
   /** Whether the label is only for screen readers. */
   hidden?: boolean;
@@ -301,9 +308,14 @@ export function Choice<T extends string>({
     <label className="choice">
       <span className={hidden ? "visually-hidden" : ""}>{label}</span>
       <select value={value} onChange={(event) => onTake(event.target.value as T)}>
+        <button type="button">
+          <span>{options.find((option) => option.value === value)?.name}</span>
+        </button>
         {options.map((option) => (
           <option key={option.value} value={option.value}>
-            {option.name}
+            <span>{option.name}</span>
+            <span className="visually-hidden">: </span>
+            <small>{option.explains}</small>
           </option>
         ))}
       </select>

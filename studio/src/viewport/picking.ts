@@ -1,7 +1,7 @@
 // What lies under the pointer, found in pixels: nodes before springs before cells, the nearest to the eye.
 import * as THREE from "three";
 import type { Motion } from "../document/motion";
-import { groupOf, type Net } from "../document/net";
+import { type Groups, groupOf, type Net } from "../document/net";
 import { type Cut, cutOf, keeps, type Section } from "../document/section";
 
 /** What was hit, by its row. */
@@ -15,7 +15,9 @@ const SPRING_REACH = 6; // px
 
 const HIDDEN = -1e6; // px
 const NEAREST = 1e-9;
-const BIN = 32; // px
+
+/** Smallest and largest side of a bin [px]. */
+const BINS = [4, 32];
 
 /** What decides where nodes are on the canvas. */
 export interface Look {
@@ -27,6 +29,16 @@ export interface Look {
   section: Section | null;
 }
 
+/** Cells by where they lie on the canvas, in squares that are about as large as half a cell. */
+interface Bins {
+  net: Net;
+  cells: Groups;
+  /** [px]. */
+  side: number;
+  across: number;
+  down: number;
+}
+
 /**
  * Nodes on the canvas: x, y [px] and depth, three numbers each. What is behind the eye or taken away by a
  * section has a depth above 1.
@@ -34,12 +46,14 @@ export interface Look {
 export class Projection {
   readonly places: Float32Array;
   private readonly matrix: THREE.Matrix4;
+  private readonly eye: [view: THREE.Matrix4, projection: THREE.Matrix4];
   private readonly cut: Cut | null;
-  private bins: { net: Net; cells: number[][]; across: number } | null = null;
+  private bins: Bins | null = null;
 
   constructor(private readonly look: Look) {
-    const { motion, section } = look;
-    this.matrix = matrixOf(look.camera);
+    const { motion, section, camera } = look;
+    this.eye = [camera.matrixWorldInverse.clone(), camera.projectionMatrix.clone()];
+    this.matrix = new THREE.Matrix4().multiplyMatrices(this.eye[1], this.eye[0]);
     this.cut = cutOf(section, motion.positions);
     const { positions } = motion;
     this.places = new Float32Array(positions.length);
@@ -58,7 +72,10 @@ export class Projection {
     const { look } = this;
     const same = motion === look.motion && section === look.section;
     const sized = width === look.width && height === look.height;
-    return same && sized && this.matrix.equals(matrixOf(camera));
+    const [view, projection] = this.eye;
+    const seen =
+      camera.matrixWorldInverse.equals(view) && camera.projectionMatrix.equals(projection);
+    return same && sized && seen;
   }
 
   /** Ends on the canvas of what can be seen of a line between two nodes: x, y, x, y [px]; null: nothing. */
@@ -91,24 +108,58 @@ export class Projection {
     return [ax, ay, bx, by];
   }
 
-  /** Cells whose corners surround a bin of the canvas in which a point lies. */
-  cellsNear(net: Net, x: number, y: number): number[] {
+  /** Cells that may lie over a point of the canvas. */
+  cellsNear(net: Net, x: number, y: number): Int32Array {
     if (this.bins?.net !== net) this.bins = this.binned(net);
-    const { cells, across } = this.bins;
-    const [column, row] = [Math.floor(x / BIN), Math.floor(y / BIN)];
-    return column >= 0 && column < across ? (cells[row * across + column] ?? []) : [];
+    const { cells, side, across, down } = this.bins;
+    const [column, row] = [Math.floor(x / side), Math.floor(y / side)];
+    const inside = column >= 0 && column < across && row >= 0 && row < down;
+    return inside ? groupOf(cells, row * across + column) : NONE;
   }
 
-  private binned(net: Net) {
+  private binned(net: Net): Bins {
+    const { cells, boxes } = this.boxes(net);
+    let sum = 0;
+    for (let at = 0; at < boxes.length; at += 4)
+      sum += Math.max(boxes[at + 1] - boxes[at], boxes[at + 3] - boxes[at + 2]);
+    // Small bins hold few cells to look at; large ones are soon filled.
+    const side = Math.min(Math.max(sum / (cells.length || 1) / 2, BINS[0]), BINS[1]);
+    const across = Math.ceil(this.look.width / side);
+    const down = Math.ceil(this.look.height / side);
+    const starts = new Int32Array(across * down + 1);
+    const each = (put: (bin: number, cell: number) => void) => {
+      cells.forEach((cell, number) => {
+        const [left, right, top, bottom] = [0, 1, 2, 3].map((edge) =>
+          Math.floor(boxes[4 * number + edge] / side),
+        );
+        for (let row = Math.max(0, top); row <= Math.min(down - 1, bottom); row++)
+          for (let column = Math.max(0, left); column <= Math.min(across - 1, right); column++)
+            put(row * across + column, cell);
+      });
+    };
+    each((bin) => {
+      starts[bin + 1] += 1;
+    });
+    for (let bin = 0; bin < across * down; bin++) starts[bin + 1] += starts[bin];
+    const items = new Int32Array(starts[across * down]);
+    const next = starts.slice();
+    each((bin, cell) => {
+      items[next[bin]++] = cell;
+    });
+    return { net, cells: { starts, items }, side, across, down };
+  }
+
+  /** Cells that are wholly seen, and where each lies: left, right, top, bottom [px]. */
+  private boxes(net: Net): { cells: number[]; boxes: number[] } {
     const { places } = this;
-    const across = Math.ceil(this.look.width / BIN);
-    const down = Math.ceil(this.look.height / BIN);
-    const cells = Array.from({ length: across * down }, (): number[] => []);
+    const { starts, items } = net.boundaries;
+    const cells: number[] = [];
+    const boxes: number[] = [];
     for (let cell = 0; cell < net.addresses.length; cell++) {
       let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
       let whole = true;
-      for (const node of groupOf(net.boundaries, cell)) {
-        const at = 3 * node;
+      for (let corner = starts[cell]; corner < starts[cell + 1]; corner++) {
+        const at = 3 * items[corner];
         whole &&= places[at + 2] <= 1;
         left = Math.min(left, places[at]);
         right = Math.max(right, places[at]);
@@ -117,12 +168,10 @@ export class Projection {
       }
       // What a section cuts through is not drawn as a cell either.
       if (!whole) continue;
-      const last = Math.min(across - 1, Math.floor(right / BIN));
-      for (let row = Math.max(0, Math.floor(top / BIN)); row * BIN <= bottom && row < down; row++)
-        for (let column = Math.max(0, Math.floor(left / BIN)); column <= last; column++)
-          cells[row * across + column].push(cell);
+      cells.push(cell);
+      boxes.push(left, right, top, bottom);
     }
-    return { net, cells, across };
+    return { cells, boxes };
   }
 
   private place(x: number, y: number, z: number): readonly [number, number, number] {
@@ -139,9 +188,7 @@ export class Projection {
 
 const GONE = [HIDDEN, HIDDEN, 2] as const;
 
-function matrixOf(camera: THREE.Camera): THREE.Matrix4 {
-  return new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-}
+const NONE = new Int32Array();
 
 /** What lies at a point of the canvas [px]; `kinds` says what is looked for. */
 export function pick(
@@ -216,17 +263,20 @@ function frontCell(net: Net, projection: Projection, x: number, y: number): numb
   let best = -1;
   let front = 1;
   const { places } = projection;
+  const { starts, items } = net.boundaries;
   for (const cell of projection.cellsNear(net, x, y)) {
-    const around = groupOf(net.boundaries, cell);
+    const [first, end] = [starts[cell], starts[cell + 1]];
     let inside = false;
     let depth = 0;
-    for (let corner = 0; corner < around.length; corner++) {
-      const a = 3 * around[corner];
-      const b = 3 * around[(corner + 1) % around.length];
-      depth += places[a + 2] / around.length;
+    let b = 3 * items[end - 1];
+    for (let corner = first; corner < end; corner++) {
+      const a = 3 * items[corner];
+      depth += places[a + 2];
       const [ax, ay, bx, by] = [places[a], places[a + 1], places[b], places[b + 1]];
       if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) inside = !inside;
+      b = a;
     }
+    depth /= end - first;
     if (inside && depth < front) {
       best = cell;
       front = depth;

@@ -485,10 +485,11 @@ export class Viewport {
   ): void {
     const cut = cutOf(view.section, motion.positions);
     const whole = (cell: number) =>
-      groupOf(net.boundaries, cell).every((node) => keeps(cut, motion.positions, node));
-    const all = [...net.addresses.keys()].filter(whole);
-    if (view.cells) this.skin.set(net, motion, all, cellColours(net, view.colour.by, theme));
-    else this.skin.clear();
+      !cut || groupOf(net.boundaries, cell).every((node) => keeps(cut, motion.positions, node));
+    if (view.cells) {
+      const all = [...net.addresses.keys()].filter(whole);
+      this.skin.set(net, motion, all, cellColours(net, view.colour.by, theme));
+    } else this.skin.clear();
     const cells = new Set([...selectedRows(net, selection, "cells"), ...this.brushed]);
     if (hover?.kind === "cell") cells.add(hover.row);
     const weights = live?.weights ?? {};
@@ -520,14 +521,18 @@ function isRestless(): boolean {
 
 /** Sides round some cells: what has them on one side only. The springs within stay as they are coloured. */
 function outlineOf(net: Net, cells: number[]): [number, number][] {
-  const sides = new Map<string, [number, number]>();
+  // By the numbers of both nodes in one.
+  const sides = new Map<number, [number, number]>();
+  const scale = net.nodes.length;
+  const { starts, items } = net.boundaries;
   for (const cell of cells) {
-    const around = groupOf(net.boundaries, cell);
-    around.forEach((node, corner) => {
-      const next = around[(corner + 1) % around.length];
-      const key = node < next ? `${node} ${next}` : `${next} ${node}`;
+    let node = items[starts[cell + 1] - 1];
+    for (let corner = starts[cell]; corner < starts[cell + 1]; corner++) {
+      const next = items[corner];
+      const key = node < next ? node * scale + next : next * scale + node;
       if (!sides.delete(key)) sides.set(key, [node, next]);
-    });
+      node = next;
+    }
   }
   return [...sides.values()];
 }
