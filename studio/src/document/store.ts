@@ -39,6 +39,8 @@ export type ToolId =
   | "graft"
   | "weigh";
 
+export type PanelId = "net" | "cells" | "framework" | "evolve" | "graft" | "history";
+
 /** How the net is shown. */
 export interface View {
   colour: ColourChoice;
@@ -95,6 +97,8 @@ export interface State {
   pinnedOnly: boolean;
   /** Nets that are marked for a comparison, two at most. */
   marked: string[];
+  /** The panel in front. */
+  panel: PanelId;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
   preview: Preview | null;
@@ -161,6 +165,7 @@ export const store = createStore<State>()(() => ({
   pins: [],
   pinnedOnly: false,
   marked: [],
+  panel: "net",
   gallery: false,
   preview: null,
   selection: NOTHING,
@@ -198,10 +203,12 @@ export function openDocument(id: string): void {
     pins: [],
     pinnedOnly: false,
     marked: [],
+    panel: "net" as const,
     preview: null,
     selection: NOTHING,
     hover: null,
     busy: "",
+    notice: null,
   };
   store.setState({ ...closed, line: id ? "connecting" : "closed", problem: "" });
   if (!id) return;
@@ -240,16 +247,22 @@ export function isAwaiting(): boolean {
 /** What is under way for so long that it is told. */
 const underWay = new Set<{ label: string }>();
 
-/** Tells what is under way while it is; failures become a notice. Resolves to null if it failed. */
+/**
+ * Tells what is under way while it is; failures become a notice, and success ends that of what failed before. Resolves
+ * to null if it failed.
+ */
 export async function busyWith<T>(label: string, work: Promise<T>): Promise<T | null> {
   const own = { label };
+  const told = notices;
   const tellBusy = () => store.setState({ busy: [...underWay].at(-1)?.label ?? "" });
   const timer = setTimeout(() => {
     underWay.add(own);
     tellBusy();
   }, BUSY_AFTER);
   try {
-    return await work;
+    const result = await work;
+    if (told === notices) forgetNotice();
+    return result;
   } catch (error) {
     notify((error as Error).message);
     return null;
@@ -273,6 +286,16 @@ export function tell(request: Telling): void {
 /** Shows a problem to the person. */
 export function notify(text: string): void {
   store.setState({ notice: { id: ++notices, text } });
+}
+
+/** Brings a panel to the front. */
+export function openPanel(panel: PanelId): void {
+  store.setState({ panel });
+}
+
+/** Takes back the problem that was shown: things go on. */
+export function forgetNotice(): void {
+  if (store.getState().notice) store.setState({ notice: null });
 }
 
 /** Changes how the net is shown. */

@@ -5,11 +5,13 @@ import { useStore } from "zustand";
 import { type Grafting, grafting, type Place, putAway } from "../document/grafting";
 import { kindColour } from "../document/palettes";
 import {
-  anchorsAtSelection,
   applyGraft,
   changePlace,
+  copyPatch,
+  freeName,
+  mayApply,
+  placesSeenFrom,
   takePatch,
-  topLevel,
   turnGhost,
 } from "../document/planning";
 import { ask, store } from "../document/store";
@@ -38,32 +40,17 @@ export function GraftPanel() {
 function Copying() {
   const selection = useStudio((state) => state.selection);
   const net = useStudio((state) => state.net);
-  const patches = useGrafting((state) => state.patches);
   const count = selection.kind === "cells" ? selection.keys.length : 0;
   // biome-ignore lint/correctness/useExhaustiveDependencies: they are read from the store
-  const anchors = useMemo(() => anchorsAtSelection(), [selection, net]);
+  const options = useMemo(() => placesSeenFrom(), [selection, net]);
   const [from, setFrom] = useState("");
   const [typed, setTyped] = useState("");
-  const options = [
-    ...anchors.map((name) => ({ value: `anchor ${name}`, name: `anchor ${name}` })),
-    { value: "free", name: "any cell" },
-    ...(count
-      ? [{ value: "seed", name: `cell ${topLevel(selection.keys.at(-1)!)}, chosen last` }]
-      : []),
-  ];
-  const seen = options.some(({ value }) => value === from) ? from : options[0].value;
-  const name = typed || freeName(patches?.patches ?? []);
+  const seen = options.find(({ value }) => value === from) ?? options[0];
+  const free = useGrafting(freeName);
+  const name = typed || free;
   const valid = /^[a-z][a-z0-9_]*$/.test(name);
   const copy = async () => {
-    const anchor = seen.startsWith("anchor ") ? seen.slice(7) : null;
-    const seed = seen === "seed" ? topLevel(selection.keys.at(-1)!) : null;
-    if (
-      await ask(
-        { type: "copy_patch", name, cells: selection.keys, anchor, seed },
-        "Copying the patch",
-      )
-    )
-      setTyped("");
+    if (await copyPatch(name, seen)) setTyped("");
   };
   return (
     <Section
@@ -77,7 +64,7 @@ function Copying() {
         </p>
       ) : (
         <>
-          <Choice label="Seen from" value={seen} options={options} onTake={setFrom} />
+          <Choice label="Seen from" value={seen.value} options={options} onTake={setFrom} />
           <label className="number-field">
             <span>Name</span>
             <input
@@ -96,13 +83,6 @@ function Copying() {
       )}
     </Section>
   );
-}
-
-function freeName(patches: PatchEntry[]): string {
-  const taken = new Set(patches.map(({ name }) => name));
-  let number = 1;
-  while (taken.has(`patch_${number}`)) number++;
-  return `patch_${number}`;
 }
 
 function Library() {
@@ -314,7 +294,7 @@ function Setting() {
         <button
           type="button"
           className="button primary"
-          disabled={!plan || (place !== "anchors" && !pinned)}
+          disabled={!mayApply({ plan, pinned, place })}
           onClick={() => applyGraft()}
         >
           Apply

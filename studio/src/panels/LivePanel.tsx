@@ -103,6 +103,7 @@ function LiveParameters({ live }: { live: LiveState }) {
           problems={problems}
           labels={LABELS}
           onTake={take}
+          onMend={(name) => setProblems((before) => ({ ...before, [name]: "" }))}
         />
       )}
       {changed > 0 && (

@@ -2,7 +2,17 @@
 import { isComparing } from "../document/comparing";
 import { grafting } from "../document/grafting";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
-import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
+import { startRun } from "../document/starting";
+import {
+  ask,
+  changeView,
+  openPanel,
+  type PanelId,
+  type State,
+  select,
+  store,
+  type ToolId,
+} from "../document/store";
 import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
 import { CHOOSING_COMMANDS } from "./choosingCommands";
@@ -123,6 +133,16 @@ export function selectExtreme(most: boolean): () => void {
     select({ kind: "springs", keys: [springKey(net, best)] });
   };
 }
+
+/** Panels by what a person may look for. */
+const PANELS: { id: PanelId; label: string }[] = [
+  { id: "net", label: "Net: open its panel" },
+  { id: "cells", label: "Cells: open their panel" },
+  { id: "framework", label: "Framework: open its panel" },
+  { id: "evolve", label: "Evolve: open its panel" },
+  { id: "graft", label: "Graft: open its panel, with patches" },
+  { id: "history", label: "History: open its panel" },
+];
 
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
@@ -315,6 +335,15 @@ export const COMMANDS: Command[] = [
     },
   },
   {
+    id: "start-run",
+    label: "Evolve: start a run",
+    group: "Net",
+    run: () => {
+      openPanel("evolve");
+      startRun();
+    },
+  },
+  {
     id: "live-keep",
     label: "Stop live evolution and keep the net",
     group: "Net",
@@ -343,6 +372,13 @@ export const COMMANDS: Command[] = [
       Object.keys(live?.weights ?? {}).length ? null : "no cells are brushed",
     run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
   },
+  ...PANELS.map(({ id, label }) => ({
+    id: `panel-${id}`,
+    label,
+    group: "View" as const,
+    refused: () => (isComparing() ? "close the comparison first" : null),
+    run: () => openPanel(id),
+  })),
   {
     id: "fit",
     label: "Fit the net",
