@@ -8,11 +8,13 @@ export interface Axis {
   id: string;
   name: string;
   logarithmic?: boolean;
+  /** Whether its values are counts. */
+  counts?: boolean;
 }
 
 export const AXES: Axis[] = [
-  { id: "generation", name: "Generation" },
-  { id: "springs", name: "Springs" },
+  { id: "generation", name: "Generation", counts: true },
+  { id: "springs", name: "Springs", counts: true },
   { id: "force_differential", name: "Differential", logarithmic: true },
   { id: "force_max", name: "Largest N" },
   { id: "force_min", name: "Smallest N" },
@@ -57,17 +59,19 @@ export interface Measure {
   id: string;
   name: string;
   unit: string;
+  /** Whether its values are counts. */
+  counts?: boolean;
 }
 
 export const MEASURES: Measure[] = [
   { id: "force_differential", name: "Force differential", unit: "" },
   { id: "suf", name: "Spring utilization factor", unit: "" },
-  { id: "springs", name: "Springs", unit: "" },
+  { id: "springs", name: "Springs", unit: "", counts: true },
   { id: "force_max", name: "Largest force", unit: "N" },
   { id: "force_min", name: "Smallest force", unit: "N" },
   { id: "total_length", name: "Total length", unit: "m" },
   { id: "shortest_spring", name: "Shortest spring", unit: "m" },
-  { id: "generation", name: "Generation", unit: "" },
+  { id: "generation", name: "Generation", unit: "", counts: true },
 ];
 
 /** The sort key of a window. */

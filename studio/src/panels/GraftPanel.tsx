@@ -2,6 +2,7 @@
 import { ChevronsRight, FlipHorizontal2, Pencil, RotateCw, Trash2 } from "lucide-react";
 import { useMemo, useState } from "react";
 import { useStore } from "zustand";
+import { differentialTells } from "../document/figures";
 import { type Grafting, grafting, type Place, putAway } from "../document/grafting";
 import { kindColour } from "../document/palettes";
 import {
@@ -17,7 +18,7 @@ import {
 import { ask, store } from "../document/store";
 import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { toggleLock } from "./graftCommands";
 import { Choice, IconButton, Section } from "./parts";
 import { useStudio } from "./use";
@@ -55,7 +56,7 @@ function Copying() {
   return (
     <Section
       title="Copy a patch"
-      aside={<span className="aside">{count ? `${count} cells selected` : ""}</span>}
+      aside={<span className="aside">{count ? `${inFull(count)} cells selected` : ""}</span>}
     >
       {count === 0 ? (
         <p className="explain">
@@ -155,7 +156,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
         ) : (
           <>
             <span>
-              {patch.tiles.length} cells in {patch.top_level}
+              {inFull(patch.tiles.length)} cells in {inFull(patch.top_level)}
               {patch.anchored ? ", at an anchor" : ""}
             </span>
             <span title={patch.origin}>{patch.origin}</span>
@@ -257,6 +258,26 @@ function Setting() {
           <FlipHorizontal2 /> Mirror
         </button>
       </div>
+      <div className="row">
+        <button
+          type="button"
+          className="button primary"
+          disabled={!mayApply({ plan, pinned, place })}
+          onClick={() => applyGraft()}
+        >
+          Apply
+        </button>
+        <button
+          type="button"
+          className="button"
+          onClick={() => {
+            putAway();
+            store.setState({ tool: "pull" });
+          }}
+        >
+          Cancel
+        </button>
+      </div>
       {turns === 1 && (
         <p className="explain">
           Turned any further round {place === "anchors" ? "these anchors" : "this anchor"}, part of
@@ -279,48 +300,30 @@ function Setting() {
       {plan?.before && plan.after && <Comparison before={plan.before} after={plan.after} />}
       {plan && (
         <p className="explain">
-          {plan.placed.length} {plan.placed.length === 1 ? "place" : "places"},{" "}
-          {plan.placed.reduce((sum, { cells: here }) => sum + here.length, 0)} of{" "}
-          {plan.placed.length * cells} top-level cells
+          {inFull(plan.placed.length)} {plan.placed.length === 1 ? "place" : "places"},{" "}
+          {inFull(plan.placed.reduce((sum, { cells: here }) => sum + here.length, 0))} of{" "}
+          {inFull(plan.placed.length * cells)} top-level cells
           {plan.skipped.length > 0 && (
             <span className="warning" title={plan.skipped.join("\n")}>
               {" "}
-              · {plan.skipped.length} do not fit: {plan.skipped[0]}
+              · {inFull(plan.skipped.length)} do not fit: {plan.skipped[0]}
             </span>
           )}
         </p>
       )}
-      <div className="row">
-        <button
-          type="button"
-          className="button primary"
-          disabled={!mayApply({ plan, pinned, place })}
-          onClick={() => applyGraft()}
-        >
-          Apply
-        </button>
-        <button
-          type="button"
-          className="button"
-          onClick={() => {
-            putAway();
-            store.setState({ tool: "pull" });
-          }}
-        >
-          Cancel
-        </button>
-      </div>
     </Section>
   );
 }
 
 function Comparison({ before, after }: { before: GraftFigures; after: GraftFigures }) {
-  const rows: [string, string, keyof GraftFigures, boolean][] = [
-    ["Springs", "", "springs", false],
-    ["Force differential", "", "force_differential", true],
-    ["Largest force", "N", "force_max", true],
-    ["Smallest force", "N", "force_min", false],
-    ["Dangling nodes", "", "dangling", true],
+  const tells = differentialTells(after, before);
+  const inFour = (value: number | null) => inDigits(value, 4);
+  const rows: [string, string, keyof GraftFigures, boolean, (value: number | null) => string][] = [
+    ["Springs", "", "springs", false, inFull],
+    ["Force differential", "", "force_differential", true, inFour],
+    ["Largest force", "N", "force_max", true, inFour],
+    ["Smallest force", "N", "force_min", false, inFour],
+    ["Dangling nodes", "", "dangling", true, inFull],
   ];
   return (
     <table className="comparison">
@@ -332,18 +335,26 @@ function Comparison({ before, after }: { before: GraftFigures; after: GraftFigur
         </tr>
       </thead>
       <tbody>
-        {rows.map(([name, unit, key, less]) => {
+        {rows.map(([name, unit, key, less, said]) => {
           const [old, now] = [before[key] as number | null, after[key] as number | null];
           const better =
-            old !== null && now !== null && old !== now && less ? (now < old ? "good" : "bad") : "";
+            old !== null &&
+            now !== null &&
+            old !== now &&
+            less &&
+            (key !== "force_differential" || tells)
+              ? now < old
+                ? "good"
+                : "bad"
+              : "";
           return (
             <tr key={key}>
               <th scope="row">
                 {name}
                 {unit && <span className="unit"> {unit}</span>}
               </th>
-              <td>{inDigits(old, 4)}</td>
-              <td className={better}>{inDigits(now, 4)}</td>
+              <td>{said(old)}</td>
+              <td className={better}>{said(now)}</td>
             </tr>
           );
         })}
@@ -376,7 +387,7 @@ export function SymmetryWords() {
   const words =
     rotations + mirrors === 1
       ? "The framework has no symmetry."
-      : `The framework has ${rotations} rotations${mirrors ? ` and ${mirrors} mirrors` : ""}.`;
+      : `The framework has ${inFull(rotations)} rotations${mirrors ? ` and ${inFull(mirrors)} mirrors` : ""}.`;
   return (
     <>
       {words} {broken && <span className="warning">The net does not: {broken}.</span>}

@@ -1,5 +1,6 @@
 // The form of a run's and of live evolution's parameters: each field explains itself and says why it was refused.
 import { useEffect, useId, useState } from "react";
+import { typeNames } from "../document/cellTypes";
 import { PARAMETERS, type ParameterName, type Texts } from "../document/parameters";
 import { Choice, Hint } from "./parts";
 
@@ -75,6 +76,7 @@ function Field(field: FieldOf) {
           </div>
         )}
       </Hint>
+      {name === "types" && <p className="field-reading">{typeNames(text)}</p>}
       {problem && (
         <p className="problem field-problem" role="alert" id={words}>
           {problem}

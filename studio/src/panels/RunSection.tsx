@@ -1,10 +1,10 @@
 // The run of the document: its course, what it is started with, and the runs before it.
-import { Pause, Play, Square } from "lucide-react";
+import { Images, Pause, Play, Square } from "lucide-react";
 import { type MouseEvent, useRef } from "react";
 import { useStore } from "zustand";
 import { useShallow } from "zustand/react/shallow";
 import type { Run } from "../document/run";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import {
   changeRun,
   forgetProblem,
@@ -14,7 +14,7 @@ import {
   textsShown,
   typeParameter,
 } from "../document/starting";
-import { ask } from "../document/store";
+import { ask, store } from "../document/store";
 import { ParameterFields } from "./ParameterFields";
 import { Fact, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
@@ -73,8 +73,8 @@ function Runs({ run }: { run: Run }) {
             >
               <b>{one.number ? `Run ${one.number}` : "Run elsewhere"}</b>
               <span>
-                {one.generations} generations, {one.springs.toLocaleString("en")} springs,
-                differential {inDigits(one.force_differential, 4)}
+                {inFull(one.generations)} generations, {inFull(one.springs)} springs, differential{" "}
+                {inDigits(one.force_differential, 4)}
               </span>
               {one.name === name && <em>shown</em>}
             </button>
@@ -138,6 +138,7 @@ function Course({ run }: { run: Run }) {
           Follow in the view
         </label>
       </div>
+      {last && <LookButton stands={status !== "running"} />}
       {run.state.driver && (
         <p className="explain">
           Driven by {run.state.driver}, which does what you ask between two generations.
@@ -154,10 +155,10 @@ function Course({ run }: { run: Run }) {
           </p>
           <RunGraph rows={run.rows} of="springs" own={start_springs} />
           <p className="graph-words">
-            <i className="swatch good" /> springs <b>{last.springs.toLocaleString("en")}</b>
+            <i className="swatch good" /> springs <b>{inFull(last.springs)}</b>
           </p>
           <p className="explain">{reading(start_springs, last.springs, run.state.parameters)}</p>
-          <Fact name="Generations" value={generations} digits={6} />
+          <Fact name="Generations" value={generations} count />
           <Fact
             name="Spring utilization factor"
             value={last.suf}
@@ -166,6 +167,23 @@ function Course({ run }: { run: Run }) {
         </>
       )}
     </>
+  );
+}
+
+/** Opens the gallery, which is what a run is for once it stands. */
+function LookButton({ stands }: { stands: boolean }) {
+  const open = useStudio((state) => state.gallery);
+  return (
+    <div className="row">
+      <button
+        type="button"
+        className={stands && !open ? "button icon primary wide" : "button icon wide"}
+        aria-pressed={open}
+        onClick={() => store.setState({ gallery: !open })}
+      >
+        <Images /> {open ? "Hide the individuals" : "Look at individuals"}
+      </button>
+    </div>
   );
 }
 

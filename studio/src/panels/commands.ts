@@ -1,6 +1,8 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
 import { isComparing } from "../document/comparing";
+import { isEvolving, notEditable } from "../document/editable";
 import { grafting } from "../document/grafting";
+import { inFull } from "../document/scale";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { startRun } from "../document/starting";
 import {
@@ -56,15 +58,22 @@ export interface Dialogs {
   open(dialog: "palette" | "keys" | "save" | "start"): void;
 }
 
-const needsCells = ({ selection }: State) =>
-  selection.kind === "cells" && selection.keys.length ? null : "select cells first";
-const needsOneNode = ({ selection }: State) =>
-  selection.kind === "nodes" && selection.keys.length === 1 ? null : "select one node first";
-const needsSpring = ({ selection }: State) =>
+const oneSpring = ({ selection }: State) =>
   selection.kind === "springs" && selection.keys.length === 1 ? null : "select one spring first";
 
-const needsLive = ({ live }: State) =>
-  live && live.status !== "none" ? null : "nothing evolves live";
+// Each for what edits them.
+const needsCells = (state: State) =>
+  notEditable(state) ??
+  (state.selection.kind === "cells" && state.selection.keys.length ? null : "select cells first");
+const needsOneNode = (state: State) =>
+  notEditable(state) ??
+  (state.selection.kind === "nodes" && state.selection.keys.length === 1
+    ? null
+    : "select one node first");
+const needsSpring = (state: State) => notEditable(state) ?? oneSpring(state);
+
+const needsLive = (state: State) => (isEvolving(state) ? null : "nothing evolves live");
+const whileEvolving = (state: State) => (isEvolving(state) ? notEditable(state) : null);
 
 function cells(): string[] {
   const { selection } = store.getState();
@@ -105,7 +114,7 @@ export function seek(steps: number): void {
   const { document } = store.getState();
   const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
   const orbit = grafting.getState().lock;
-  ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
+  ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${inFull(steps)} steps`);
 }
 
 const BAND = 0.1; // of the force, on each side
@@ -183,12 +192,20 @@ export const COMMANDS: Command[] = [
     keys: "Shift+R",
     run: () => move("reset"),
   },
-  { id: "seek", label: "Seek stress, one step", group: "Net", keys: "G", run: () => seek(1) },
+  {
+    id: "seek",
+    label: "Seek stress, one step",
+    group: "Net",
+    keys: "G",
+    refused: notEditable,
+    run: () => seek(1),
+  },
   {
     id: "seek10",
     label: "Seek stress, ten steps",
     group: "Net",
     keys: "Shift+G",
+    refused: notEditable,
     run: () => seek(10),
   },
   {
@@ -270,7 +287,7 @@ export const COMMANDS: Command[] = [
     id: "same-force",
     label: "Select springs of about the same force",
     group: "Springs and nodes",
-    refused: needsSpring,
+    refused: oneSpring,
     run: selectSameForce,
   },
   {
@@ -300,6 +317,7 @@ export const COMMANDS: Command[] = [
     label: "Subdivide with a brush",
     group: "Tools",
     keys: "B",
+    refused: notEditable,
     run: tool("subdivide"),
   },
   {
@@ -307,10 +325,25 @@ export const COMMANDS: Command[] = [
     label: "Give types with a brush",
     group: "Tools",
     keys: "Shift+B",
+    refused: notEditable,
     run: tool("retype"),
   },
-  { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
-  { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
+  {
+    id: "tool-cut",
+    label: "Cut springs",
+    group: "Tools",
+    keys: "X",
+    refused: notEditable,
+    run: tool("cut"),
+  },
+  {
+    id: "tool-add",
+    label: "Add springs",
+    group: "Tools",
+    keys: "A",
+    refused: notEditable,
+    run: tool("add"),
+  },
   {
     id: "tool-weigh",
     label: "Brush where evolution grows",
@@ -482,7 +515,8 @@ export const COMMANDS: Command[] = [
     label: "Undo",
     group: "Document",
     keys: "Ctrl+Z",
-    refused: ({ document }) => (document?.position ? null : "nothing was done"),
+    refused: (state) =>
+      whileEvolving(state) ?? (state.document?.position ? null : "nothing was done"),
     mayBecomePossible: true,
     run: () => undo(false),
   },
@@ -491,8 +525,11 @@ export const COMMANDS: Command[] = [
     label: "Redo",
     group: "Document",
     keys: "Ctrl+Shift+Z",
-    refused: ({ document }) =>
-      document && document.position < document.length ? null : "nothing was undone",
+    refused: (state) =>
+      whileEvolving(state) ??
+      (state.document && state.document.position < state.document.length
+        ? null
+        : "nothing was undone"),
     mayBecomePossible: true,
     run: () => undo(true),
   },

@@ -1,5 +1,6 @@
 // What is told once it is done, with the way back: nets that are taken over, kept or discarded.
 import { toast } from "sonner";
+import { inFull } from "../document/scale";
 import { ask, notify, store } from "../document/store";
 
 /** Makes what is looked at the design. */
@@ -13,7 +14,7 @@ export async function takeOver(): Promise<void> {
 export async function keepGrown(): Promise<void> {
   const generation = store.getState().live?.generation ?? 0;
   const reply = await ask({ type: "live_evolve", what: "keep", parameters: {} }, "Keeping the net");
-  if (reply) confirmAction(`Your design is now what grew in ${generation} generations`);
+  if (reply) confirmAction(`Your design is now what grew in ${inFull(generation)} generations`);
 }
 
 /** Goes back to the design; what evolved live can be brought back. */
