@@ -144,3 +144,38 @@ test("a banner covers nothing of the net", async ({ page, visit }) => {
   await expect(page.getByText("of what grew, against my design")).toBeVisible();
   await banner.getByRole("button", { name: "Discard" }).click();
 });
+
+test("what is told hides nothing, can be put away, and goes with what it is about", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  const toasts = page.locator("[data-sonner-toast]");
+  const refuse = async () => {
+    await page.getByRole("textbox", { name: /^Stiffness k(?!,)/ }).fill("-1");
+    await page.getByRole("button", { name: "Apply to all springs" }).click();
+    await expect(toasts).toContainText("must be greater than 0");
+  };
+  await refuse();
+  const under = () =>
+    toasts.evaluate((toast) => {
+      const { x, y, width, height } = toast.getBoundingClientRect();
+      return document.elementFromPoint(x + width / 2, y + height / 2)?.tagName;
+    });
+  await expect.poll(under).toBe("CANVAS");
+  await toasts.getByRole("button", { name: "Dismiss" }).click();
+  await expect(toasts).toHaveCount(0);
+
+  // The next action that succeeds ends what was said of the last.
+  await refuse();
+  await page.keyboard.press("g");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await expect(toasts).toHaveCount(0, { timeout: 1500 });
+
+  await page.keyboard.press("Escape");
+
+  // What is told of one document is no word on another.
+  await refuse();
+  await visit("one-cylinder");
+  await expect(toasts).toHaveCount(0, { timeout: 1000 });
+});

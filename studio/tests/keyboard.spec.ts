@@ -122,3 +122,51 @@ test("everything can be done by keys alone", async ({ page, open, home }) => {
   await expect(page.locator(".title")).toContainText("saved as by-keys.toml");
   expect(existsSync(join(home, "by-keys.toml"))).toBe(true);
 });
+
+test("what is typed into the palette finds what it says", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  await page.keyboard.press("Control+k");
+  const items = page.locator("[cmdk-item]");
+  const typed = async (words: string) => {
+    await page.getByPlaceholder("What do you want to do?").fill(words);
+    return items.first();
+  };
+  const marked = page.locator('[cmdk-item][data-selected="true"]');
+  for (const [words, first] of [
+    ["pin", "Pin what is shown, or unpin it"],
+    ["history", "History: open its panel"],
+    ["graft", "Graft: open its panel, with patches"],
+    ["evolve", "Evolve live, or pause it"],
+    ["EVOLVE: start", "Evolve: start a run"],
+    ["framework", "Framework: open its panel"],
+    ["top view", "View from the top"],
+  ]) {
+    await expect(await typed(words)).toContainText(first);
+    await expect(marked).toContainText(first);
+  }
+  // What can't be done is said, and nothing else is taken for it.
+  await expect(await typed("undo")).toContainText("nothing was done");
+  await expect(items).toHaveCount(1);
+  await expect(await typed("gallery")).toContainText("there is no run");
+  await expect(items).toHaveCount(1);
+  await expect(marked).toHaveCount(0);
+  const last = async (words: string) => {
+    await typed(words);
+    return items.last();
+  };
+  await expect(await last("evolve")).toHaveAttribute("aria-disabled", "true");
+  await expect(await last("graft")).toContainText("take a patch first");
+  await expect(await typed("aplygrf")).toContainText("Apply the graft");
+
+  await typed("history");
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("tab", { name: "History" })).toHaveAttribute("aria-selected", "true");
+  await page.keyboard.press("Control+a");
+  await command(page, "copy");
+  await expect(page.getByRole("tab", { name: "Graft" })).toHaveAttribute("aria-selected", "true");
+  await expect(page.locator(".patch-name").first()).toBeVisible();
+  await command(page, "start a run");
+  await expect(page.getByRole("tab", { name: "Evolve" })).toHaveAttribute("aria-selected", "true");
+  await expect(page.getByRole("button", { name: "Start a new run" })).toBeVisible();
+  await page.getByRole("button", { name: "Stop", exact: true }).click();
+});

@@ -65,3 +65,59 @@ test("an ended run stays ended over a restart, and earlier runs can be shown aga
   await expect(page.getByRole("button", { name: "Continue" })).toBeDisabled();
   await again.kill();
 });
+
+test("a parameter is mended and a run started by one press, and by a double press only one", async ({
+  page,
+  open,
+}) => {
+  await open("one-cylinder");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  const field = page.getByLabel("Mutants a generation", { exact: true });
+  await page.getByLabel("End at generation", { exact: true }).fill("3");
+  await field.fill("none");
+  const start = page.getByRole("button", { name: "Evolve", exact: true });
+  await start.click();
+  const refused = page.locator(".panel-evolve").getByRole("alert");
+  await expect(refused).toContainText("none");
+
+  // What is typed stays while another panel is looked at.
+  await page.getByRole("tab", { name: "Net" }).click();
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await expect(field).toHaveValue("none");
+
+  // Nothing moves under the pointer between down and up.
+  await field.fill("6");
+  await expect(refused).toHaveCount(0);
+  const before = (await start.boundingBox())!;
+  await page.mouse.move(before.x + before.width / 2, before.y + 6);
+  await page.mouse.down();
+  expect((await start.boundingBox())!.y).toBe(before.y);
+  await page.mouse.up();
+  const runs = page.locator(".panel-evolve");
+  await expect(runs.getByText("ended: the number of generations is reached")).toBeVisible();
+  await expect(page.locator(".fact", { hasText: /^Generations3/ })).toBeVisible();
+
+  await page.getByRole("button", { name: "Start a new run" }).dblclick();
+  const list = page.getByRole("list", { name: "Runs of this document" });
+  await expect(list.getByRole("button", { pressed: true })).toContainText("Run 2");
+  await expect(runs.getByText("ended: the number of generations is reached")).toBeVisible();
+  await page.waitForTimeout(500);
+  await expect(list.getByRole("button")).toHaveCount(2);
+});
+
+test("a double press does not press what has come in the place of a button", async ({
+  page,
+  visit,
+}) => {
+  await visit("one-cylinder");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByLabel("End at springs (0: never)").fill("0");
+  const start = (await page.getByRole("button", { name: "Evolve", exact: true }).boundingBox())!;
+  await page.mouse.click(start.x + 10, start.y + 10, { clickCount: 2, delay: 150 });
+  await page.getByRole("button", { name: "Pause", exact: true }).dblclick({ delay: 150 });
+  await expect(page.getByRole("button", { name: "Continue" })).toBeVisible();
+  await page.waitForTimeout(300);
+  await expect(page.getByRole("button", { name: "Continue" })).toBeVisible();
+  await expect(page.getByRole("list", { name: "Runs of this document" })).toHaveCount(0);
+  await page.getByRole("button", { name: "Stop", exact: true }).click();
+});

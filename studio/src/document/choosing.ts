@@ -8,11 +8,13 @@ export interface Axis {
   id: string;
   name: string;
   logarithmic?: boolean;
+  /** Whether its values are counts. */
+  counts?: boolean;
 }
 
 export const AXES: Axis[] = [
-  { id: "generation", name: "Generation" },
-  { id: "springs", name: "Springs" },
+  { id: "generation", name: "Generation", counts: true },
+  { id: "springs", name: "Springs", counts: true },
   { id: "force_differential", name: "Differential", logarithmic: true },
   { id: "force_max", name: "Largest N" },
   { id: "force_min", name: "Smallest N" },
@@ -59,6 +61,8 @@ export interface Measure {
   /** What it is, in words. */
   explains: string;
   unit: string;
+  /** Whether its values are counts. */
+  counts?: boolean;
 }
 
 export const MEASURES: Measure[] = [
@@ -74,12 +78,12 @@ export const MEASURES: Measure[] = [
     explains: "rise of the differential for every spring that came",
     unit: "",
   },
-  { id: "springs", name: "Springs", explains: "how dense the net is", unit: "" },
+  { id: "springs", name: "Springs", explains: "how dense the net is", unit: "", counts: true },
   { id: "force_max", name: "Largest force", explains: "of all springs, in N", unit: "N" },
   { id: "force_min", name: "Smallest force", explains: "of all springs, in N", unit: "N" },
   { id: "total_length", name: "Total length", explains: "of all springs, in m", unit: "m" },
   { id: "shortest_spring", name: "Shortest spring", explains: "in m", unit: "m" },
-  { id: "generation", name: "Generation", explains: "when it was made", unit: "" },
+  { id: "generation", name: "Generation", explains: "when it was made", unit: "", counts: true },
 ];
 
 /** The sort key of a window. */

@@ -34,3 +34,18 @@ export function figuresNow(net: Net, motion: Motion): FiguresNow | null {
     shortest_spring: least(lengths),
   };
 }
+
+type Compared = Pick<FiguresNow, "springs" | "force_differential">;
+
+/** Rise of the force differential for every spring that came, as the engine has it for runs; null if none came. */
+export function springUtilization(now: Compared, before: Compared): number | null {
+  const gained = now.springs - before.springs;
+  if (gained <= 0 || now.force_differential === null || before.force_differential === null)
+    return null;
+  return (now.force_differential - before.force_differential) / gained;
+}
+
+/** Whether more force differential is worse: that which comes with more springs is what they cost. */
+export function differentialTells(now: Compared, before: Compared | null): boolean {
+  return before === null || !((springUtilization(now, before) ?? 0) > 0);
+}

@@ -1,6 +1,6 @@
 // What is asked of the engine for selections and grafts; problems of a plan are shown where it is.
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
-import { grafting, type Place, putAway } from "./grafting";
+import { type Grafting, grafting, type Place, putAway } from "./grafting";
 import { NOTHING } from "./selection";
 import { ask, askQuietly, select, selecting, store } from "./store";
 
@@ -59,6 +59,61 @@ export function anchorsAtSelection(): string[] {
     for (const node of items.subarray(starts[cell], starts[cell + 1])) nodes.add(node);
   });
   return net.anchorNames.filter((_, anchor) => nodes.has(net.anchors[anchor]));
+}
+
+/** What a patch can be seen from: an anchor, its seed cell, or any cell. */
+export interface SeenFrom {
+  value: string;
+  name: string;
+  explains: string;
+  anchor: string | null;
+  seed: number | null;
+}
+
+/** What the selected cells can be seen from as a patch, the likeliest first. */
+export function placesSeenFrom(): [SeenFrom, ...SeenFrom[]] {
+  const { selection } = store.getState();
+  const anchors = anchorsAtSelection().map((anchor) => {
+    const name = `anchor ${anchor}`;
+    const explains = "it is set round other anchors as it lies round this one";
+    return { value: name, name, explains, anchor, seed: null };
+  });
+  const last = selection.kind === "cells" ? selection.keys.at(-1) : undefined;
+  const any = {
+    value: "free",
+    name: "any cell",
+    explains: "it is set on any cell that it fits",
+    anchor: null,
+    seed: null,
+  };
+  const seed = last === undefined ? null : topLevel(last);
+  const [first = any, ...others] = anchors.length ? [...anchors, any] : [any];
+  if (seed === null) return [first, ...others];
+  return [
+    first,
+    ...others,
+    {
+      value: "seed",
+      name: `cell ${seed}, chosen last`,
+      explains: "this cell comes to lie on the one that is clicked",
+      anchor: null,
+      seed,
+    },
+  ];
+}
+
+/** A name that no patch has. */
+export function freeName({ patches } = grafting.getState()): string {
+  const taken = new Set(patches?.patches.map(({ name }) => name));
+  let number = 1;
+  while (taken.has(`patch_${number}`)) number++;
+  return `patch_${number}`;
+}
+
+/** Keeps the selected cells as a patch; resolves to whether it did. */
+export async function copyPatch(name: string, { anchor, seed }: SeenFrom): Promise<boolean> {
+  const cells = store.getState().selection.keys;
+  return !!(await ask({ type: "copy_patch", name, cells, anchor, seed }, "Copying the patch"));
 }
 
 export function listPatches(): void {
@@ -138,12 +193,17 @@ export async function plan(): Promise<void> {
   }
 }
 
+/** Whether the patch can be set: what has not been looked at is not. */
+export function mayApply(
+  { plan: shown, pinned, place }: Pick<Grafting, "plan" | "pinned" | "place"> = grafting.getState(),
+): boolean {
+  return shown !== null && (place === "anchors" || pinned);
+}
+
 /** Sets the patch: one action. */
 export async function applyGraft(): Promise<void> {
   const wanted = placing();
-  const { plan: shown, pinned, place } = grafting.getState();
-  // What has not been looked at is not set.
-  if (!wanted || !shown || (place !== "anchors" && !pinned)) return;
+  if (!wanted || !mayApply()) return;
   if (await ask({ type: "graft", ...wanted }, "Grafting")) {
     putAway();
     store.setState({ tool: "pull" });

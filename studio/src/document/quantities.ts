@@ -1,4 +1,5 @@
 // What springs can be coloured by: quantities with unit and formula, and kinds with names.
+import { typeName } from "./cellTypes";
 import type { Motion } from "./motion";
 import { groupOf, type Net } from "./net";
 
@@ -174,7 +175,7 @@ function springTypes(net: Net): { numbers: Uint8Array; names: string[] } {
     const number = words.indexOf(plainType(net.types[cell]));
     for (const spring of groupOf(net.own, cell)) numbers[spring] = number;
   }
-  const found = { numbers, names: words.map((word) => `Type ${word}`) };
+  const found = { numbers, names: words.map((word) => `Type ${typeName(word)}`) };
   typesOfNets.set(net, found);
   return found;
 }

@@ -76,3 +76,23 @@ export function inDigits(value: number | null | undefined, digits = 3): string {
   const text = Number(value.toPrecision(digits)).toLocaleString("en", { maximumFractionDigits: 6 });
   return text.replace("-", "−");
 }
+
+/** A count for people, written out however large it is. */
+export function inFull(count: number | null | undefined): string {
+  return count === null || count === undefined ? "–" : count.toLocaleString("en");
+}
+
+/** How far a value went from another, as finely as the value is shown in so many digits; null if that is less. */
+export function changeInDigits(value: number, before: number, digits: number): string | null {
+  const change = Math.abs(value - before);
+  const size = Math.max(Math.abs(value), Math.abs(before));
+  const finest = Math.floor(Math.log10(size)) - digits + 1;
+  if (!(change >= 10 ** finest)) return null;
+  const plain = size >= 1e-3 && size < 1e5;
+  const said = plain
+    ? Number(change.toPrecision(3)).toLocaleString("en", {
+        maximumFractionDigits: Math.max(0, -finest),
+      })
+    : inDigits(change);
+  return `${value > before ? "+" : "−"}${said}`;
+}

@@ -40,6 +40,8 @@ export type ToolId =
   | "graft"
   | "weigh";
 
+export type PanelId = "net" | "cells" | "framework" | "evolve" | "graft" | "history";
+
 /** How the net is shown. */
 export interface View {
   colour: ColourChoice;
@@ -96,6 +98,8 @@ export interface State {
   pinnedOnly: boolean;
   /** Nets that are marked for a comparison, two at most. */
   marked: string[];
+  /** The panel in front. */
+  panel: PanelId;
   /** Whether the individuals of the run are shown under the net. */
   gallery: boolean;
   preview: Preview | null;
@@ -164,6 +168,7 @@ export const store = createStore<State>()(() => ({
   pins: [],
   pinnedOnly: false,
   marked: [],
+  panel: "net",
   gallery: false,
   preview: null,
   selection: NOTHING,
@@ -202,9 +207,11 @@ export function openDocument(id: string): void {
     pins: [],
     pinnedOnly: false,
     marked: [],
+    panel: "net" as const,
     preview: null,
     selection: NOTHING,
     hover: null,
+    notice: null,
   };
   store.setState({ ...closed, line: id ? "connecting" : "closed", problem: "" });
   if (!id) return;
@@ -252,10 +259,13 @@ function selectingMade(): (reply: Reply) => void {
   };
 }
 
-/** What comes of something; failures become a notice, and null. */
+/** What comes of something; failures become a notice, and null; success ends that of what failed before. */
 export async function orNotice<T>(work: Promise<T>): Promise<T | null> {
+  const told = notices;
   try {
-    return await work;
+    const result = await work;
+    if (told === notices) forgetNotice();
+    return result;
   } catch (error) {
     notify((error as Error).message);
     return null;
@@ -276,6 +286,16 @@ export function tell(request: Telling): void {
 /** Shows a problem to the person. */
 export function notify(text: string): void {
   store.setState({ notice: { id: ++notices, text } });
+}
+
+/** Brings a panel to the front. */
+export function openPanel(panel: PanelId): void {
+  store.setState({ panel });
+}
+
+/** Takes back the problem that was shown: things go on. */
+export function forgetNotice(): void {
+  if (store.getState().notice) store.setState({ notice: null });
 }
 
 /** Changes how the net is shown. */

@@ -1,10 +1,10 @@
 // The page: the start, or a document with its tools, its net and its panels.
 import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
-import { useCallback, useEffect, useMemo, useState } from "react";
+import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { Toaster, toast } from "sonner";
 import { compareAsInAddress } from "../document/comparing";
-import { openDocument, store } from "../document/store";
+import { openDocument, type State, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { CompareOverlay, CompareTable, useIsComparing } from "./Compare";
 import { commandOfKey, type Dialogs } from "./commands";
@@ -18,6 +18,7 @@ import { OutOfSight } from "./OutOfSight";
 import { type OpenDialog, Overlays } from "./Overlays";
 import { Busy } from "./parts";
 import { perform } from "./performing";
+import { useSteadyPresses } from "./presses";
 import { StartPage } from "./StartPage";
 import { StatusBar } from "./StatusBar";
 import { BrushCircle, ToolHelp, ToolRail } from "./ToolRail";
@@ -39,11 +40,13 @@ export function App() {
   );
   const id = useDocumentInAddress();
   const theme = useStudio((state) => state.theme);
+  const gallery = useStudio(showsGallery);
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
   }, [theme]);
-  useNotices();
+  useNotices(id);
   useFocusFrames();
+  useSteadyPresses();
   useKeys(stage, dialogs, dialog !== null, id !== "");
   const close = useCallback(() => setDialog(null), []);
   return (
@@ -52,12 +55,22 @@ export function App() {
         <StageContext value={stage}>
           {id ? <Workbench key={id} onStage={setStage} /> : <Front />}
           <Overlays open={dialog} onClose={close} />
-          <Toaster theme={theme} position="bottom-left" offset={{ left: 316, bottom: 100 }} />
+          <Toaster
+            theme={theme}
+            position="bottom-right"
+            offset={{ right: 384, bottom: gallery ? 312 : 50 }}
+            visibleToasts={2}
+            expand
+            closeButton
+            toastOptions={{ closeButtonAriaLabel: "Dismiss" }}
+          />
         </StageContext>
       </DialogsContext>
     </Tooltip.Provider>
   );
 }
+
+const showsGallery = ({ gallery, run }: State) => gallery && run !== null;
 
 function Front() {
   return (
@@ -73,7 +86,7 @@ function Front() {
 
 function Workbench({ onStage }: { onStage(stage: Stage | null): void }) {
   const ready = useStudio((state) => state.document !== null);
-  const gallery = useStudio((state) => state.gallery && state.run !== null);
+  const gallery = useStudio(showsGallery);
   const comparing = useIsComparing();
   const classes = ["workbench", gallery && "with-gallery", comparing && "comparing"];
   return (
@@ -151,11 +164,24 @@ function useDocumentInAddress(): string {
   return id;
 }
 
-function useNotices(): void {
+/** Problems, until something was done; nothing that was told stays when another document is opened. */
+function useNotices(id: string): void {
   const notice = useStudio((state) => state.notice);
+  const told = useRef<string[]>([]);
   useEffect(() => {
-    if (notice) toast.error(notice.text, { id: notice.text });
+    if (notice) {
+      toast.error(notice.text, { id: notice.text });
+      told.current.push(notice.text);
+    } else {
+      for (const text of told.current.splice(0)) toast.dismiss(text);
+    }
   }, [notice]);
+  useEffect(() => {
+    // What the start page tells is of the document that it opens.
+    return () => {
+      if (id) toast.dismiss();
+    };
+  }, [id]);
 }
 
 /** Frames round what has the focus are for those who move it by keys; a shortcut moves nothing. */

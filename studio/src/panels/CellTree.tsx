@@ -2,8 +2,10 @@
 import { useVirtualizer } from "@tanstack/react-virtual";
 import { ChevronRight } from "lucide-react";
 import { useEffect, useMemo, useRef, useState } from "react";
+import { typeName } from "../document/cellTypes";
 import type { Net } from "../document/net";
 import { plainType } from "../document/quantities";
+import { inFull } from "../document/scale";
 import { clicked } from "../document/selection";
 import { select, store } from "../document/store";
 import { useStudio } from "./use";
@@ -173,7 +175,9 @@ export function CellTree() {
               </button>
               <span>{title}</span>
               <span className="tree-kind">
-                {branch.cell >= 0 ? `type ${plainType(net.types[branch.cell])}` : leaves.length}
+                {branch.cell >= 0
+                  ? typeName(plainType(net.types[branch.cell]))
+                  : inFull(leaves.length)}
                 {branch.cell >= 0 && net.stored[branch.cell] === 1 && " · off"}
               </span>
             </div>

@@ -1,7 +1,7 @@
 // Help with choosing: clusters of what is brushed, and where the individual that is looked at came from.
 import { useEffect, useState } from "react";
 import { pathOfSide, type Side, sideOf } from "../document/pins";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { notify, select, store } from "../document/store";
 import { documentInAddress } from "../protocol/address";
 import { fetchClusters, fetchLineage } from "../protocol/fetching";
@@ -63,7 +63,7 @@ export function ClusterSection() {
                 height={66}
               />
               <small>
-                <b>{size.toLocaleString("en")}</b> alike
+                <b>{inFull(size)}</b> alike
               </small>
             </button>
           ))}
@@ -94,7 +94,7 @@ export function LineageSection() {
   return (
     <Section
       title="Lineage"
-      aside={<span className="aside">{lineage.steps.length.toLocaleString("en")} ancestors</span>}
+      aside={<span className="aside">{inFull(lineage.steps.length)} ancestors</span>}
     >
       <ol className="lineage">
         {steps.map((step) => (
@@ -104,7 +104,7 @@ export function LineageSection() {
               title={step.edits.join("\n")}
               onClick={() => showCells(step.edits)}
             >
-              <b>{step.generation}</b>
+              <b>{inFull(step.generation)}</b>
               <span>{wordsOf(step.edits)}</span>
               <span>{inDigits(step.force_differential, 3)}</span>
             </button>

@@ -1,6 +1,7 @@
 // Two nets side by side: which is which, the scale that both share, and their figures with differences.
 import { ArrowLeftRight, Pin, PinOff, X } from "lucide-react";
 import { useMemo } from "react";
+import { typeName } from "../document/cellTypes";
 import {
   setSide,
   sharedColour,
@@ -8,10 +9,11 @@ import {
   stopComparing,
   swapSides,
 } from "../document/comparing";
+import { differentialTells } from "../document/figures";
 import { cssGradient } from "../document/palettes";
 import { labelOfSide, pinOfSide, type Side, shownSide, togglePin } from "../document/pins";
 import { QUANTITIES, type QuantityId } from "../document/quantities";
-import { inDigits, scaleOf, valueAt } from "../document/scale";
+import { inDigits, inFull, scaleOf, valueAt } from "../document/scale";
 import { changeColour } from "../document/store";
 import type { Compared, ComparedNet, PinState } from "../protocol/messages";
 import { quantityOption } from "./Legend";
@@ -59,7 +61,7 @@ function Heading({ at, side }: { at: 0 | 1; side: Side }) {
         />
         <span>
           {net
-            ? `${net.figures.springs.toLocaleString("en")} springs, differential ${inDigits(net.figures.force_differential, 4)}`
+            ? `${inFull(net.figures.springs)} springs, differential ${inDigits(net.figures.force_differential, 4)}`
             : "…"}
         </span>
       </div>
@@ -149,12 +151,14 @@ interface Row {
   less?: boolean;
 }
 
+const DIFFERENTIAL = "Force differential";
+
 const ROWS: Row[] = [
   { name: "Springs", unit: "", value: ({ figures }) => figures.springs },
   { name: "Nodes", unit: "", value: ({ figures }) => figures.nodes },
   { name: "Cells", unit: "", value: ({ figures }) => figures.cells },
   {
-    name: "Force differential",
+    name: DIFFERENTIAL,
     unit: "",
     value: ({ figures }) => figures.force_differential,
     less: true,
@@ -212,7 +216,9 @@ function Figures({ table }: { table: Compared }) {
             name,
             unit,
             values: [value(first), value(second)],
-            less: less ?? false,
+            less:
+              (less ?? false) &&
+              (name !== DIFFERENTIAL || differentialTells(second.figures, first.figures)),
           }))}
         />
         <p className="explain">
@@ -220,7 +226,7 @@ function Figures({ table }: { table: Compared }) {
             ? "The nets have different frameworks."
             : changed === 0
               ? "No top-level cell differs."
-              : `${changed.toLocaleString("en")} top-level ${changed === 1 ? "cell differs" : "cells differ"}.`}
+              : `${inFull(changed)} top-level ${changed === 1 ? "cell differs" : "cells differ"}.`}
         </p>
       </Section>
       <Section title="Reactions" aside={<span className="aside">N, by anchor</span>}>
@@ -238,7 +244,7 @@ function Figures({ table }: { table: Compared }) {
         <Table
           caption="Cells by type"
           rows={types.map(({ name, first, second }) => ({
-            name: `Type ${name}`,
+            name: `Type ${typeName(name)}`,
             unit: "",
             values: [first, second],
             less: false,
@@ -293,15 +299,13 @@ function Table({ caption, rows }: { caption: string; rows: Line[] }) {
 }
 
 function figure(value: number | null): string {
-  return Number.isInteger(value) ? value!.toLocaleString("en") : inDigits(value, 4);
+  return Number.isInteger(value) ? inFull(value!) : inDigits(value, 4);
 }
 
 /** A change of a value; what rounding leaves over is none. */
 function signed(change: number, value: number): string {
   if (Math.abs(change) <= 1e-9 * Math.abs(value)) return "0";
-  const size = Number.isInteger(change)
-    ? Math.abs(change).toLocaleString("en")
-    : inDigits(Math.abs(change), 3);
+  const size = Number.isInteger(change) ? inFull(Math.abs(change)) : inDigits(Math.abs(change), 3);
   return `${change > 0 ? "+" : "−"}${size}`;
 }
 

@@ -2,7 +2,8 @@
 import { Columns2, Images, Pin, PinOff } from "lucide-react";
 import { compare } from "../document/comparing";
 import { lookAt, pinOfSide, shownSide, togglePin } from "../document/pins";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
+import { changeableOf } from "../document/starting";
 import { ask, store } from "../document/store";
 import { ClusterSection, LineageSection } from "./Choosing";
 import { takeOver } from "./confirming";
@@ -10,7 +11,7 @@ import { LiveSection } from "./LivePanel";
 import { ParallelCoordinates } from "./ParallelCoordinates";
 import { PinnedSection } from "./Pins";
 import { IconButton, Section } from "./parts";
-import { changeableOf, RunSection } from "./RunSection";
+import { RunSection } from "./RunSection";
 import { Scatter } from "./Scatter";
 import { RankLegend, SortControl } from "./Sorting";
 import { useStudio } from "./use";
@@ -63,10 +64,10 @@ export function LookingBanner() {
     <div className="looking" role="status">
       <span>
         <b>{looking.label}</b>
-        {figures.springs.toLocaleString("en")} springs, force differential{" "}
+        {inFull(figures.springs)} springs, force differential{" "}
         {inDigits(figures.force_differential, 4)}
         <small>
-          My design: {own.springs.toLocaleString("en")} and {inDigits(own.force_differential, 4)}
+          My design: {inFull(own.springs)} and {inDigits(own.force_differential, 4)}
         </small>
       </span>
       <button type="button" className="button primary" onClick={takeOver}>

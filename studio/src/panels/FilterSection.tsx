@@ -19,7 +19,7 @@ const METHODS = [
   {
     value: "dynamic",
     name: "Dynamic (QdT)",
-    explains: "Cells of any levels meet; those of type 6 tie to every node around them.",
+    explains: "Cells of any levels meet; those of type 6 dynamic tie to every node around them.",
   },
 ];
 

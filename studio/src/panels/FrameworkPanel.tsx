@@ -58,7 +58,7 @@ export function FrameworkPanel() {
       {draft.mesh ? (
         <Section title="Mesh">
           <p className="explain">The cells lie as they were drawn, in a mesh of quads.</p>
-          <Fact name="Quads" value={draft.mesh.faces.length} digits={6} />
+          <Fact name="Quads" value={draft.mesh.faces.length} count />
         </Section>
       ) : (
         <>
@@ -98,7 +98,7 @@ export function FrameworkPanel() {
           whole
           onTake={(level) => set({ level })}
         />
-        <Fact name="Anchors" value={draft.anchors.length} digits={6} />
+        <Fact name="Anchors" value={draft.anchors.length} count />
         <p className="explain">
           Anchors are moved in the view, and held or let go with the node that is selected.
         </p>

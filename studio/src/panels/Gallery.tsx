@@ -12,7 +12,7 @@ import {
   togglePin,
 } from "../document/pins";
 import { type Individuals, placeOf } from "../document/run";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { store } from "../document/store";
 import { clickSide, compareMarked, IndividualMenu, keyOnSide } from "./IndividualMenu";
 import { IconButton } from "./parts";
@@ -59,7 +59,7 @@ export function Gallery() {
   return (
     <section className="gallery" aria-label="Individuals">
       <Header
-        words={`${rows.length.toLocaleString("en")} in ${generations} generation${generations === 1 ? "" : "s"}${sort.byGeneration ? ", the newest first" : ", ranked"}`}
+        words={`${inFull(rows.length)} in ${inFull(generations)} generation${generations === 1 ? "" : "s"}${sort.byGeneration ? ", the newest first" : ", ranked"}`}
       />
       {individuals.springs.length === 0 && (
         <p className="explain">The first generation is on its way.</p>
@@ -94,14 +94,24 @@ function useColumns(box: RefObject<HTMLDivElement | null>): number {
   return Math.max(1, Math.floor((width - MARGIN) / WIDTH));
 }
 
+const PLAIN = "Force differential";
+
+/** The measure that is written under each individual: what it is sorted by, unless that is there anyway. */
+function measureUnder(sort: Sort): string {
+  const told = ["force_differential", "springs", "generation"].includes(sort.by);
+  return told ? PLAIN : measureOf(sort).name;
+}
+
 function Header({ words }: { words: string }) {
   const rows = useStudio((state) => state.sort.byGeneration);
   const only = useStudio((state) => state.pinnedOnly);
   const marked = useStudio((state) => state.marked);
+  const read = useStudio(({ sort }) => `${measureUnder(sort).toLowerCase()} · springs`);
   return (
     <header>
       <h2>Individuals</h2>
       <span>{words}</span>
+      <span className="gallery-reading">under each: {read}</span>
       <div className="gap" />
       {marked.length > 0 && (
         <button
@@ -197,7 +207,7 @@ function Body({ box, shelves }: { box: RefObject<HTMLDivElement | null>; shelves
                 style={{ transform: `translateY(${row.start}px)`, height: HEIGHT }}
               >
                 <b>
-                  {shelves.labelOf(row.index).toLocaleString("en")}
+                  {inFull(shelves.labelOf(row.index))}
                   {sort.byGeneration &&
                     generations?.[shelves.labelOf(row.index) - 1]?.winner === null && (
                       <small title="No mutant of this generation was better: its parent is of an earlier one">
@@ -281,7 +291,7 @@ const Cell = memo(function Cell({
   const { generation, individual } = placeOf(individuals, row);
   const springs = individuals.springs[row];
   const differential = inDigits(individuals.differential[row]);
-  const plain = ["force_differential", "springs", "generation"].includes(sort.by);
+  const plain = measureUnder(sort) === PLAIN;
   const value = plain ? differential : inDigits(placeOnAxis(individuals, sort.by, row));
   return (
     <>
@@ -290,7 +300,7 @@ const Cell = memo(function Cell({
         className={marked ? "gallery-cell marked" : "gallery-cell"}
         data-side={side}
         aria-pressed={current}
-        aria-label={`Generation ${generation}, individual ${individual}: ${springs} springs, force differential ${differential}${chosen ? ", the parent" : ""}${pinned ? ", pinned" : ""}${marked ? ", marked" : ""}`}
+        aria-label={`Generation ${generation}, individual ${individual}: ${inFull(springs)} springs, force differential ${differential}${chosen ? ", the parent" : ""}${pinned ? ", pinned" : ""}${marked ? ", marked" : ""}`}
         style={{ transform: `translateX(${start}px)`, width: WIDTH - 6, height: HEIGHT - 6 }}
         onClick={(event) => clickSide(event, side)}
         onKeyDown={(event) => keyOnSide(event, side)}
@@ -299,7 +309,7 @@ const Cell = memo(function Cell({
       >
         <Thumbnail path={path} revision={folder} width={WIDTH - 14} height={HEIGHT - 34} />
         <small>
-          <b>{value}</b> {!plain && measureOf(sort).unit} · {springs}
+          <b>{value}</b> {!plain && measureOf(sort).unit} · {inFull(springs)}
         </small>
         {chosen && <em className="gallery-parent">parent</em>}
       </button>

@@ -2,20 +2,23 @@
 import { ChevronsRight, FlipHorizontal2, Pencil, RotateCw, Trash2 } from "lucide-react";
 import { useMemo, useState } from "react";
 import { useStore } from "zustand";
+import { differentialTells } from "../document/figures";
 import { type Grafting, grafting, type Place, putAway } from "../document/grafting";
 import { kindColour } from "../document/palettes";
 import {
-  anchorsAtSelection,
   applyGraft,
   changePlace,
+  copyPatch,
+  freeName,
+  mayApply,
+  placesSeenFrom,
   takePatch,
-  topLevel,
   turnGhost,
 } from "../document/planning";
 import { ask, store } from "../document/store";
 import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { toggleLock } from "./graftCommands";
 import { Choice, IconButton, NameField, type Option, Section } from "./parts";
 import { useStudio } from "./use";
@@ -38,47 +41,22 @@ export function GraftPanel() {
 function Copying() {
   const selection = useStudio((state) => state.selection);
   const net = useStudio((state) => state.net);
-  const patches = useGrafting((state) => state.patches);
   const count = selection.kind === "cells" ? selection.keys.length : 0;
   // biome-ignore lint/correctness/useExhaustiveDependencies: they are read from the store
-  const anchors = useMemo(() => anchorsAtSelection(), [selection, net]);
+  const options = useMemo(() => placesSeenFrom(), [selection, net]);
   const [from, setFrom] = useState("");
   const [typed, setTyped] = useState("");
-  const options = [
-    ...anchors.map((name) => ({
-      value: `anchor ${name}`,
-      name: `anchor ${name}`,
-      explains: "it is set round other anchors as it lies round this one",
-    })),
-    { value: "free", name: "any cell", explains: "it is set on any cell that it fits" },
-    ...(count
-      ? [
-          {
-            value: "seed",
-            name: `cell ${topLevel(selection.keys.at(-1)!)}, chosen last`,
-            explains: "this cell comes to lie on the one that is clicked",
-          },
-        ]
-      : []),
-  ];
-  const seen = options.some(({ value }) => value === from) ? from : options[0].value;
-  const name = typed || freeName(patches?.patches ?? []);
+  const seen = options.find(({ value }) => value === from) ?? options[0];
+  const free = useGrafting(freeName);
+  const name = typed || free;
   const valid = /^[a-z][a-z0-9_]*$/.test(name);
   const copy = async () => {
-    const anchor = seen.startsWith("anchor ") ? seen.slice(7) : null;
-    const seed = seen === "seed" ? topLevel(selection.keys.at(-1)!) : null;
-    if (
-      await ask(
-        { type: "copy_patch", name, cells: selection.keys, anchor, seed },
-        "Copying the patch",
-      )
-    )
-      setTyped("");
+    if (await copyPatch(name, seen)) setTyped("");
   };
   return (
     <Section
       title="Copy a patch"
-      aside={<span className="aside">{count ? `${count} cells selected` : ""}</span>}
+      aside={<span className="aside">{count ? `${inFull(count)} cells selected` : ""}</span>}
     >
       {count === 0 ? (
         <p className="explain">
@@ -87,7 +65,7 @@ function Copying() {
         </p>
       ) : (
         <>
-          <Choice label="Seen from" value={seen} options={options} onTake={setFrom} />
+          <Choice label="Seen from" value={seen.value} options={options} onTake={setFrom} />
           <label className="number-field">
             <span>Name</span>
             <input
@@ -106,13 +84,6 @@ function Copying() {
       )}
     </Section>
   );
-}
-
-function freeName(patches: PatchEntry[]): string {
-  const taken = new Set(patches.map(({ name }) => name));
-  let number = 1;
-  while (taken.has(`patch_${number}`)) number++;
-  return `patch_${number}`;
 }
 
 function Library() {
@@ -175,7 +146,7 @@ function PatchCard({ patch }: { patch: PatchEntry }) {
         ) : (
           <>
             <span>
-              {patch.tiles.length} cells in {patch.top_level}
+              {inFull(patch.tiles.length)} cells in {inFull(patch.top_level)}
               {patch.anchored ? ", at an anchor" : ""}
             </span>
             <span title={patch.origin}>{patch.origin}</span>
@@ -281,6 +252,26 @@ function Setting() {
           <FlipHorizontal2 /> Mirror
         </button>
       </div>
+      <div className="row">
+        <button
+          type="button"
+          className="button primary"
+          disabled={!mayApply({ plan, pinned, place })}
+          onClick={() => applyGraft()}
+        >
+          Apply
+        </button>
+        <button
+          type="button"
+          className="button"
+          onClick={() => {
+            putAway();
+            store.setState({ tool: "pull" });
+          }}
+        >
+          Cancel
+        </button>
+      </div>
       {turns === 1 && (
         <p className="explain">
           Turned any further round {place === "anchors" ? "these anchors" : "this anchor"}, part of
@@ -303,48 +294,30 @@ function Setting() {
       {plan?.before && plan.after && <Comparison before={plan.before} after={plan.after} />}
       {plan && (
         <p className="explain">
-          {plan.placed.length} {plan.placed.length === 1 ? "place" : "places"},{" "}
-          {plan.placed.reduce((sum, { cells: here }) => sum + here.length, 0)} of{" "}
-          {plan.placed.length * cells} top-level cells
+          {inFull(plan.placed.length)} {plan.placed.length === 1 ? "place" : "places"},{" "}
+          {inFull(plan.placed.reduce((sum, { cells: here }) => sum + here.length, 0))} of{" "}
+          {inFull(plan.placed.length * cells)} top-level cells
           {plan.skipped.length > 0 && (
             <span className="warning" title={plan.skipped.join("\n")}>
               {" "}
-              · {plan.skipped.length} do not fit: {plan.skipped[0]}
+              · {inFull(plan.skipped.length)} do not fit: {plan.skipped[0]}
             </span>
           )}
         </p>
       )}
-      <div className="row">
-        <button
-          type="button"
-          className="button primary"
-          disabled={!plan || (place !== "anchors" && !pinned)}
-          onClick={() => applyGraft()}
-        >
-          Apply
-        </button>
-        <button
-          type="button"
-          className="button"
-          onClick={() => {
-            putAway();
-            store.setState({ tool: "pull" });
-          }}
-        >
-          Cancel
-        </button>
-      </div>
     </Section>
   );
 }
 
 function Comparison({ before, after }: { before: GraftFigures; after: GraftFigures }) {
-  const rows: [string, string, keyof GraftFigures, boolean][] = [
-    ["Springs", "", "springs", false],
-    ["Force differential", "", "force_differential", true],
-    ["Largest force", "N", "force_max", true],
-    ["Smallest force", "N", "force_min", false],
-    ["Dangling nodes", "", "dangling", true],
+  const tells = differentialTells(after, before);
+  const inFour = (value: number | null) => inDigits(value, 4);
+  const rows: [string, string, keyof GraftFigures, boolean, (value: number | null) => string][] = [
+    ["Springs", "", "springs", false, inFull],
+    ["Force differential", "", "force_differential", true, inFour],
+    ["Largest force", "N", "force_max", true, inFour],
+    ["Smallest force", "N", "force_min", false, inFour],
+    ["Dangling nodes", "", "dangling", true, inFull],
   ];
   return (
     <table className="comparison">
@@ -356,18 +329,26 @@ function Comparison({ before, after }: { before: GraftFigures; after: GraftFigur
         </tr>
       </thead>
       <tbody>
-        {rows.map(([name, unit, key, less]) => {
+        {rows.map(([name, unit, key, less, said]) => {
           const [old, now] = [before[key] as number | null, after[key] as number | null];
           const better =
-            old !== null && now !== null && old !== now && less ? (now < old ? "good" : "bad") : "";
+            old !== null &&
+            now !== null &&
+            old !== now &&
+            less &&
+            (key !== "force_differential" || tells)
+              ? now < old
+                ? "good"
+                : "bad"
+              : "";
           return (
             <tr key={key}>
               <th scope="row">
                 {name}
                 {unit && <span className="unit"> {unit}</span>}
               </th>
-              <td>{inDigits(old, 4)}</td>
-              <td className={better}>{inDigits(now, 4)}</td>
+              <td>{said(old)}</td>
+              <td className={better}>{said(now)}</td>
             </tr>
           );
         })}
@@ -400,7 +381,7 @@ export function SymmetryWords() {
   const words =
     rotations + mirrors === 1
       ? "The framework has no symmetry."
-      : `The framework has ${rotations} rotations${mirrors ? ` and ${mirrors} mirrors` : ""}.`;
+      : `The framework has ${inFull(rotations)} rotations${mirrors ? ` and ${inFull(mirrors)} mirrors` : ""}.`;
   return (
     <>
       {words} {broken && <span className="warning">The net does not: {broken}.</span>}

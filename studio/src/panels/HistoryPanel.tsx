@@ -2,6 +2,7 @@
 import { GitBranch } from "lucide-react";
 import { useEffect, useRef } from "react";
 import { ask } from "../document/store";
+import { Hint } from "./parts";
 import { useStudio } from "./use";
 
 export function HistoryPanel() {
@@ -35,11 +36,13 @@ export function HistoryPanel() {
               <span className="number">{number || ""}</span>
               {label}
               {origin && (
-                <GitBranch
-                  className="branch"
-                  role="img"
-                  aria-label={`branched from ${origin.run}`}
-                />
+                <Hint text={`Bred in ${origin.run}; its net became the design here`} side="left">
+                  <GitBranch
+                    className="branch"
+                    role="img"
+                    aria-label={`branched from ${origin.run}`}
+                  />
+                </Hint>
               )}
             </button>
           </li>

@@ -1,8 +1,10 @@
 // What the pointer is on: a spring with its force, length, rest length and formula; a node; a cell.
+import { typeName } from "../document/cellTypes";
+import { isEvolving } from "../document/editable";
 import { formulaOf, lawOf, SENSES } from "../document/laws";
 import { groupOf, springCells } from "../document/net";
 import { lengthsOf, stressOf } from "../document/quantities";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import type { Hover, State, ToolId } from "../document/store";
 import { useStudio } from "./use";
 
@@ -42,7 +44,7 @@ function WouldDo({ hover, tool }: { hover: Hover; tool: ToolId }) {
   const anchor = hover.kind === "node" ? net.anchors.indexOf(hover.row) : -1;
   const name =
     hover.kind === "cell"
-      ? `Cell ${net.addresses[hover.row]}, type ${net.types[hover.row]}`
+      ? `Cell ${net.addresses[hover.row]}, type ${typeName(net.types[hover.row])}`
       : hover.kind === "spring"
         ? "Spring"
         : anchor >= 0
@@ -61,7 +63,7 @@ function deedOf(tool: ToolId, { brush, brushType }: State): string {
     brush === null ? "brush: erase" : brush < 1 ? "brush: keep out" : "brush: grow here";
   const deeds: Partial<Record<ToolId, string>> = {
     subdivide: "brush: subdivide",
-    retype: `brush: give type ${brushType}`,
+    retype: `brush: give type ${typeName(brushType)}`,
     weigh: weighing,
     cut: "click: cut it",
     add: "click: tie a spring here",
@@ -118,10 +120,17 @@ export function SpringCard({ spring }: { spring: number }) {
   );
 }
 
+/** Why a node can't be dragged now. */
+function whyStays(state: State, anchor: boolean): string {
+  if (isEvolving(state)) return anchor ? "" : "the net evolves";
+  return anchor && state.document?.looking ? "this is not your design" : "";
+}
+
 function NodeCard({ node }: { node: number }) {
   const net = useStudio((state) => state.net)!;
   const motion = useStudio((state) => state.motion)!;
   const anchor = net.anchors.indexOf(node);
+  const held = useStudio((state) => whyStays(state, anchor >= 0));
   const at = 3 * node;
   const reaction = anchor >= 0 ? motion.reactions.subarray(3 * anchor, 3 * anchor + 3) : null;
   return (
@@ -137,8 +146,14 @@ function NodeCard({ node }: { node: number }) {
         <Line name="Reaction" symbol="R" value={Math.hypot(...reaction)} unit="N" strong />
       )}
       <footer>
-        <span>{anchor >= 0 ? "drag to move it" : "drag to pull the net"}</span>
-        <span>⇧ vertical · Ctrl level</span>
+        {held ? (
+          <span>stays where it is: {held}</span>
+        ) : (
+          <>
+            <span>{anchor >= 0 ? "drag to move it" : "drag to pull the net"}</span>
+            <span>⇧ vertical · Ctrl level</span>
+          </>
+        )}
       </footer>
     </>
   );
@@ -155,9 +170,9 @@ function CellCard({ cell }: { cell: number }) {
         <b>Cell {net.addresses[cell]}</b>
         <span>{net.parts[net.cellPart[cell]]}</span>
       </header>
-      <Line name="Type" symbol="" value={net.types[cell]} unit="" />
+      <Line name="Type" symbol="" value={typeName(net.types[cell])} unit="" />
       <Line name="Level" symbol="" value={net.cellLevel[cell]} unit="" />
-      <Line name="Springs" symbol="" value={springs.length} unit="" />
+      <Line name="Springs" symbol="" value={inFull(springs.length)} unit="" />
       <Line name="Inner force" symbol="ΣF" value={inner} unit="N" strong />
     </>
   );

@@ -1,6 +1,7 @@
 // The panels at the right.
 import { Tabs } from "radix-ui";
-import { useEffect, useRef, useState } from "react";
+import { type ReactNode, useEffect, useRef } from "react";
+import { openPanel, type PanelId } from "../document/store";
 import { CellTree } from "./CellTree";
 import { EvolvePanel } from "./EvolvePanel";
 import { FrameworkPanel } from "./FrameworkPanel";
@@ -9,7 +10,7 @@ import { HistoryPanel } from "./HistoryPanel";
 import { NetPanel } from "./NetPanel";
 import { useStudio } from "./use";
 
-const PANELS = [
+const PANELS: { id: PanelId; name: string; Panel: () => ReactNode }[] = [
   { id: "net", name: "Net", Panel: NetPanel },
   { id: "cells", name: "Cells", Panel: CellTree },
   { id: "framework", name: "Framework", Panel: FrameworkPanel },
@@ -19,7 +20,7 @@ const PANELS = [
 ];
 
 export function Inspector() {
-  const [panel, setPanel] = useState("net");
+  const panel = useStudio((state) => state.panel);
   const selection = useStudio((state) => state.selection);
   const aside = useRef<HTMLElement>(null);
   // What was just selected stands at the top of its panel.
@@ -28,7 +29,7 @@ export function Inspector() {
   }, [selection]);
   return (
     <aside className="inspector" aria-label="Panels" ref={aside}>
-      <Tabs.Root value={panel} onValueChange={setPanel}>
+      <Tabs.Root value={panel} onValueChange={(value) => openPanel(value as PanelId)}>
         <Tabs.List className="tabs" aria-label="Panels">
           {PANELS.map(({ id, name }) => (
             <Tabs.Trigger key={id} value={id}>

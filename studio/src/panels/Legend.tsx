@@ -21,7 +21,7 @@ import {
   type QuantityId,
   quantityOf,
 } from "../document/quantities";
-import { inDigits, type RangeMode, valueAt } from "../document/scale";
+import { inDigits, inFull, type RangeMode, valueAt } from "../document/scale";
 import { changeColour } from "../document/store";
 import { largestReaction } from "../viewport/arrows";
 import { Choice, Hint, NumberField, type Option } from "./parts";
@@ -195,7 +195,7 @@ function Entry({
         <i style={{ background: colour }} />
       )}
       <span>{name}</span>
-      <span>{count.toLocaleString("en")}</span>
+      <span>{inFull(count)}</span>
     </div>
   );
 }

@@ -9,7 +9,7 @@ import {
   textOf,
   valueSaid,
 } from "../document/parameters";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { ask, askQuietly, store } from "../document/store";
 import { GROW, springsIn } from "../document/weights";
 import type { Refused } from "../protocol/connection";
@@ -112,6 +112,7 @@ function LiveParameters({ live }: { live: LiveState }) {
           problems={problems}
           labels={LABELS}
           onTake={take}
+          onMend={(name) => setProblems((before) => ({ ...before, [name]: "" }))}
         />
       )}
       {changed > 0 && (
@@ -155,9 +156,9 @@ function Course({ live }: { live: LiveState }) {
               ? "The differential rises while springs come, for they share the same pull; the best has the least rise for a spring."
               : "The best has the least force differential, however many springs it has."}
       </p>
-      <Fact name="Generations" value={live.generation} digits={6} />
+      <Fact name="Generations" value={live.generation} count />
       <Fact name="Generations a second" value={live.rate} digits={3} />
-      <Fact name="Springs" value={last?.springs ?? null} digits={6} />
+      <Fact name="Springs" value={last?.springs ?? null} count />
     </>
   );
 }
@@ -210,8 +211,8 @@ function Brushes() {
       {one(null, "Erase", <Eraser />, "")}
       {count > 0 && (
         <p className="explain">
-          {count.toLocaleString("en")} brushed; what descends from them inherits it, in runs too.
-          Marks stay with the document until they are cleared.{" "}
+          {inFull(count)} brushed; what descends from them inherits it, in runs too. Marks stay with
+          the document until they are cleared.{" "}
           <button
             type="button"
             className="link"
@@ -236,13 +237,13 @@ function Growth() {
   }, [net, weights]);
   const all = (net?.ends.length ?? 0) / 2;
   const words = (count: number) =>
-    `${count.toLocaleString("en")} of ${all.toLocaleString("en")} (${((100 * count) / Math.max(all, 1)).toFixed(1)} %)`;
+    `${inFull(count)} of ${inFull(all)} (${((100 * count) / Math.max(all, 1)).toFixed(1)} %)`;
   return (
     <div className="growth">
       {grown && (
         <>
           <Fact name="Springs where it grows" value={words(grown.springs)} />
-          <Fact name="Cells where it grows" value={grown.cells} digits={6} />
+          <Fact name="Cells where it grows" value={grown.cells} count />
         </>
       )}
       {kept && <Fact name="Springs kept out of" value={words(kept.springs)} />}
@@ -260,11 +261,11 @@ export function LiveBanner() {
       <span>
         <b>
           <i className={live.status === "running" ? "pulse" : "pulse still"} />
-          Evolving live, generation {live.generation.toLocaleString("en")}
+          Evolving live, generation {inFull(live.generation)}
         </b>
         {live.status === "failed"
           ? live.reason
-          : `${live.reason || rateOf(live)} · ${(last?.springs ?? 0).toLocaleString("en")} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
+          : `${live.reason || rateOf(live)} · ${inFull(last?.springs ?? 0)} springs, force differential ${inDigits(last?.force_differential ?? null, 4)}`}
       </span>
       {live.status === "running" && (
         <button type="button" className="button icon" onClick={() => steerLive("pause")}>

@@ -1,6 +1,8 @@
 // The menu of the right mouse button on the net: what can be done with what is under it.
 import { ContextMenu } from "radix-ui";
+import { typeName } from "../document/cellTypes";
 import type { Net } from "../document/net";
+import { inFull } from "../document/scale";
 import { commandOf, retype } from "./commands";
 import { useDialogs } from "./dialogs";
 import { Keys } from "./parts";
@@ -23,7 +25,7 @@ export function NetMenu() {
     selection.keys.length === 0
       ? "Nothing selected"
       : selection.keys.length > 1
-        ? `${selection.keys.length} ${selection.kind}`
+        ? `${inFull(selection.keys.length)} ${selection.kind}`
         : `${selection.kind === "cells" ? "Cell" : selection.kind === "springs" ? "Spring" : anchor ? "Anchor" : "Node"} ${anchor ?? selection.keys[0]}`;
   return (
     <ContextMenu.Portal>
@@ -35,9 +37,9 @@ export function NetMenu() {
             <ContextMenu.SubTrigger className="menu-item">Type</ContextMenu.SubTrigger>
             <ContextMenu.Portal>
               <ContextMenu.SubContent className="menu">
-                {types.map(({ word, name }) => (
+                {types.map(({ word }) => (
                   <ContextMenu.Item key={word} className="menu-item" onSelect={() => retype(word)}>
-                    {word} {name !== word && name}
+                    {typeName(word)}
                   </ContextMenu.Item>
                 ))}
               </ContextMenu.SubContent>

@@ -1,7 +1,8 @@
 // The net as a whole: its figures, before and after the last action, stress-seeking and settings.
 import { useState } from "react";
-import { springsOfType } from "../document/cellTypes";
-import { figuresNow } from "../document/figures";
+import { springsOfType, typeName } from "../document/cellTypes";
+import { differentialTells, figuresNow, springUtilization } from "../document/figures";
+import { inFull } from "../document/scale";
 import { ask } from "../document/store";
 import { selectExtreme } from "./commands";
 import { DensitySection } from "./DensitySection";
@@ -51,6 +52,7 @@ function Figures() {
   const unrest = useUnrest();
   const figures = unrest ? { ...rest, ...unrest.now } : rest;
   const before = unrest ? rest : past;
+  const utilization = before && springUtilization(figures, before);
   const against = unrest ? unrest.why : past && last && `against before “${last.label}”`;
   return (
     <Section title="Figures" aside={against && <span className="aside">{against}</span>}>
@@ -59,10 +61,17 @@ function Figures() {
         name="Force differential"
         value={figures.force_differential}
         before={before?.force_differential}
-        better="less"
+        {...(differentialTells(figures, before) ? { better: "less" as const } : {})}
         title="Largest over smallest spring force: the nearer to 1, the sooner one kind of cord makes the net; undefined if a spring carries next to nothing"
       />
-      <Fact name="Springs" value={figures.springs} before={before?.springs} digits={6} />
+      <Fact name="Springs" value={figures.springs} before={before?.springs} count />
+      {utilization !== null && (
+        <Fact
+          name="Spring utilization factor"
+          value={utilization}
+          title="How much the force differential rose for every spring that came: the less, the better; 0 or less: it did not rise"
+        />
+      )}
       <Fact
         name="Largest force"
         value={figures.force_max}
@@ -92,7 +101,13 @@ function Figures() {
         unit="m"
         before={before?.shortest_spring}
       />
-      {!unrest && <Fact name="Area" value={figures.area} unit="m²" before={before?.area} />}
+      <Fact
+        name="Area"
+        value={unrest ? null : figures.area}
+        unit="m²"
+        before={unrest ? null : before?.area}
+        title="Of all cells, at rest"
+      />
     </Section>
   );
 }
@@ -106,7 +121,7 @@ function StressSeeking() {
   const seek = (count: number) =>
     ask(
       { type: "seek_stress", steps: count, kind: known, orbit },
-      `Seeking stress, ${count} steps`,
+      `Seeking stress, ${inFull(count)} steps`,
     );
   return (
     <Section title="Stress-seeking">
@@ -117,9 +132,9 @@ function StressSeeking() {
       <Choice
         label="Type of the children"
         value={known}
-        options={types.map(({ word, name }) => ({
+        options={types.map(({ word }) => ({
           value: word,
-          name: word === name ? word : `${word} ${name}`,
+          name: typeName(word),
           explains: springsOfType(word),
         }))}
         onTake={setKind}
@@ -146,7 +161,7 @@ function StressSeeking() {
           One step
         </button>
         <button type="button" className="button" onClick={() => seek(steps)}>
-          {steps} steps
+          {inFull(steps)} steps
         </button>
       </div>
     </Section>

@@ -6,6 +6,7 @@ import { askQuietly } from "../document/store";
 import { COMMANDS, type Command, GROUPS } from "./commands";
 import { useDialogs } from "./dialogs";
 import { FolderList } from "./FolderList";
+import { found } from "./finding";
 import { KeySheet } from "./KeySheet";
 import { Busy, Keys } from "./parts";
 import { perform } from "./performing";
@@ -30,41 +31,45 @@ function CommandPalette({ onClose }: { onClose(): void }) {
   const state = useStudio((all) => all);
   const viewport = useStage()?.viewport ?? null;
   const dialogs = useDialogs();
+  const [typed, setTyped] = useState("");
   const run = (command: Command) => {
     onClose();
     perform(command, { viewport, dialogs });
   };
+  const commands = COMMANDS.filter(({ id }) => id !== "palette");
+  const refusal = (command: Command) => command.refused?.(state) ?? null;
+  const item = (command: Command) => {
+    const refused = refusal(command);
+    return (
+      <Palette.Item
+        key={command.id}
+        value={command.id}
+        disabled={refused !== null}
+        onSelect={() => run(command)}
+      >
+        {command.label}
+        {refused ? <small>{refused}</small> : command.keys && <Keys keys={command.keys} />}
+      </Palette.Item>
+    );
+  };
   return (
     <Dialog.Content className="dialog palette" aria-describedby={undefined}>
       <Dialog.Title className="visually-hidden">Find a command</Dialog.Title>
-      <Palette label="Find a command">
-        <Palette.Input placeholder="What do you want to do?" />
+      <Palette label="Find a command" shouldFilter={false}>
+        <Palette.Input
+          placeholder="What do you want to do?"
+          value={typed}
+          onValueChange={setTyped}
+        />
         <Palette.List>
           <Palette.Empty>No command is called that.</Palette.Empty>
-          {GROUPS.map((group) => (
-            <Palette.Group key={group} heading={group}>
-              {COMMANDS.filter(
-                (command) => command.group === group && command.id !== "palette",
-              ).map((command) => {
-                const refused = command.refused?.(state) ?? null;
-                return (
-                  <Palette.Item
-                    key={command.id}
-                    value={command.label}
-                    disabled={refused !== null}
-                    onSelect={() => run(command)}
-                  >
-                    {command.label}
-                    {refused ? (
-                      <small>{refused}</small>
-                    ) : (
-                      command.keys && <Keys keys={command.keys} />
-                    )}
-                  </Palette.Item>
-                );
-              })}
-            </Palette.Group>
-          ))}
+          {typed.trim()
+            ? found(commands, typed, (command) => refusal(command) !== null).map(item)
+            : GROUPS.map((group) => (
+                <Palette.Group key={group} heading={group}>
+                  {commands.filter((command) => command.group === group).map(item)}
+                </Palette.Group>
+              ))}
         </Palette.List>
       </Palette>
     </Dialog.Content>

@@ -9,7 +9,7 @@ import {
   shareOfPlace,
 } from "../document/choosing";
 import { pinnedRows } from "../document/pins";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { store } from "../document/store";
 import { drawSoon, penOf } from "./canvas";
 import { colourOfShade, shadeOf, useRanking } from "./Sorting";
@@ -156,14 +156,14 @@ export function ParallelCoordinates() {
         ref={canvas}
         style={{ width: WIDTH, height: HEIGHT, cursor: "ns-resize" }}
         role="img"
-        aria-label={`Parallel coordinates of ${individuals.springs.length} individuals, ${chosen} of them brushed, coloured by ${measureOf(sort).name.toLowerCase()}`}
+        aria-label={`Parallel coordinates of ${inFull(individuals.springs.length)} individuals, ${inFull(chosen)} of them brushed, coloured by ${measureOf(sort).name.toLowerCase()}`}
         onPointerDown={down}
         onPointerMove={move}
         onPointerUp={() => setStroke(null)}
       />
       <p className="explain">
         {mask
-          ? `${chosen.toLocaleString("en")} of ${individuals.springs.length.toLocaleString("en")} individuals. `
+          ? `${inFull(chosen)} of ${inFull(individuals.springs.length)} individuals. `
           : "Drag along an axis to brush it. "}
         {mask && (
           <button type="button" className="link" onClick={() => store.setState({ brushes: {} })}>
@@ -194,8 +194,8 @@ function Limits({ axis, range }: { axis: Axis; range: Range }) {
     <input
       key={`${word} ${brush?.[side] ?? ""}`}
       aria-label={`${axis.name}, ${word}`}
-      defaultValue={brush && brush[side] !== range[side] ? inDigits(brush[side], 5) : ""}
-      placeholder={inDigits(range[side], 4)}
+      defaultValue={brush && brush[side] !== range[side] ? onAxis(axis, brush[side], 5) : ""}
+      placeholder={onAxis(axis, range[side], 4)}
       onBlur={(event) => {
         if (event.target.value !== event.target.defaultValue)
           set(side, event.target.value.replaceAll(",", ""));
@@ -212,6 +212,11 @@ function Limits({ axis, range }: { axis: Axis; range: Range }) {
       {field(1, "at most")}
     </>
   );
+}
+
+/** A value of an axis for people; a brush may end between two counts. */
+function onAxis({ counts }: Axis, value: number, digits: number): string {
+  return counts && Number.isInteger(value) ? inFull(value) : inDigits(value, digits);
 }
 
 function setBrush(axis: string, brush: Range): void {
@@ -241,6 +246,6 @@ function drawAxes(
     context.fillText(axis.name, at ? x(at) : 2, at % 2 ? 9 : 19);
     context.textAlign = "center";
     context.fillStyle = colour("--faint");
-    context.fillText(inDigits(ranges[at][0], 4), x(at), HEIGHT - 5);
+    context.fillText(onAxis(axis, ranges[at][0], 4), x(at), HEIGHT - 5);
   });
 }

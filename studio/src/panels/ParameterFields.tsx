@@ -1,5 +1,6 @@
 // The form of a run's and of live evolution's parameters: each field explains itself and says why it was refused.
 import { useEffect, useId, useState } from "react";
+import { typeNames } from "../document/cellTypes";
 import { PARAMETERS, type ParameterName, type Texts } from "../document/parameters";
 import { Choice, Hint } from "./parts";
 
@@ -10,6 +11,7 @@ export function ParameterFields({
   problems,
   labels = {},
   onTake,
+  onMend,
 }: {
   names: readonly ParameterName[];
   texts: Texts;
@@ -18,6 +20,8 @@ export function ParameterFields({
   /** Other labels than those of a run. */
   labels?: Texts;
   onTake(name: ParameterName, text: string): void;
+  /** What was refused is typed anew: its problem goes now, so that nothing moves once the pointer is down elsewhere. */
+  onMend(name: ParameterName): void;
 }) {
   return (
     <div className="parameters">
@@ -29,6 +33,7 @@ export function ParameterFields({
           text={texts[name] ?? ""}
           problem={problems[name] ?? ""}
           onTake={(text) => onTake(name, text)}
+          onMend={() => onMend(name)}
         />
       ))}
     </div>
@@ -41,6 +46,7 @@ interface FieldOf {
   text: string;
   problem: string;
   onTake(text: string): void;
+  onMend(): void;
 }
 
 function Field(field: FieldOf) {
@@ -70,6 +76,7 @@ function Field(field: FieldOf) {
           </div>
         )}
       </Hint>
+      {name === "types" && <p className="field-reading">{typeNames(text)}</p>}
       {problem && (
         <p className="problem field-problem" role="alert" id={words}>
           {problem}
@@ -80,7 +87,7 @@ function Field(field: FieldOf) {
 }
 
 /** Taken with Enter or on leaving the field; what was refused stays to be mended, Escape takes it back. */
-function TypedField({ label, text, problem, onTake, words }: FieldOf & { words: string }) {
+function TypedField({ label, text, problem, onTake, onMend, words }: FieldOf & { words: string }) {
   const [typed, setTyped] = useState(text);
   useEffect(() => setTyped(text), [text]);
   const take = () => {
@@ -93,7 +100,10 @@ function TypedField({ label, text, problem, onTake, words }: FieldOf & { words: 
         value={typed}
         aria-invalid={problem !== ""}
         aria-describedby={problem ? words : undefined}
-        onChange={(event) => setTyped(event.target.value)}
+        onChange={(event) => {
+          setTyped(event.target.value);
+          if (problem) onMend();
+        }}
         onBlur={take}
         onKeyDown={(event) => {
           if (event.key === "Enter") take();

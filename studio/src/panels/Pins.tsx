@@ -14,7 +14,7 @@ import {
   toggleMark,
   togglePin,
 } from "../document/pins";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import type { PinState } from "../protocol/messages";
 import { commandOf } from "./commands";
 import { Hint, IconButton, NameField, Section } from "./parts";
@@ -101,7 +101,7 @@ function PinLine({ pin }: { pin: PinState }) {
         {origin !== pin.label && <small>{origin}</small>}
         <dl>
           <dt>Springs</dt>
-          <dd>{figures.springs.toLocaleString("en")}</dd>
+          <dd>{inFull(figures.springs)}</dd>
           <dt>Differential</dt>
           <dd>{inDigits(figures.force_differential)}</dd>
           {suf !== null && (

@@ -1,5 +1,5 @@
 // What an action would do, over the net while its springs are shown as a ghost.
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { useStudio } from "./use";
 
 export function PreviewCard() {
@@ -37,7 +37,7 @@ function Count({ sign, count, of }: { sign: "+" | "−"; count: number; of: stri
   return (
     <span className={sign === "+" ? "coming" : "going"}>
       {sign}
-      {count.toLocaleString("en")} {count === 1 ? of : `${of}s`}
+      {inFull(count)} {count === 1 ? of : `${of}s`}
     </span>
   );
 }

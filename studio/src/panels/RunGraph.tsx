@@ -3,7 +3,11 @@ import { useEffect, useRef } from "react";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Run } from "../document/run";
+import { inFull } from "../document/scale";
 import { useStudio } from "./use";
+
+/** Steps between generations that have a number: whole ones. */
+const GENERATIONS = [0, 1, 2, 3, 4, 5, 6].flatMap((power) => [1, 2, 5].map((n) => n * 10 ** power));
 
 type Column = (number | null)[];
 
@@ -57,12 +61,12 @@ export function RunGraph({
           of === "differential" ? [{ series: [2, 1], fill: `${colour("--line-strong")}66` }] : [],
         scales: { x: { time: false } },
         axes: [
-          { ...axis, size: 22 },
+          { ...axis, size: 22, incrs: GENERATIONS },
           { ...axis, size: 40 },
         ],
         legend: { show: false },
         cursor: { show: false },
-        padding: [8, 6, 0, 0],
+        padding: [8, 14, 0, 0],
         hooks: {
           draw: [
             ({ ctx, bbox, valToPos }) => {
@@ -95,8 +99,8 @@ export function RunGraph({
   const last = rows.at(-1);
   const words =
     of === "differential"
-      ? `Force differential over ${rows.length} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}, at the start ${own?.toFixed(2) ?? "undefined"}`
-      : `Springs over ${rows.length} generations, now ${last?.springs ?? 0}`;
+      ? `Force differential over ${inFull(rows.length)} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}, at the start ${own?.toFixed(2) ?? "undefined"}`
+      : `Springs over ${inFull(rows.length)} generations, now ${inFull(last?.springs ?? 0)}`;
   return <div className="graph" ref={box} role="img" aria-label={words} />;
 }
 

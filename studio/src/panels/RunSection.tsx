@@ -1,54 +1,24 @@
 // The run of the document: its course, what it is started with, and the runs before it.
-import { Pause, Play, Square } from "lucide-react";
-import { useRef, useState } from "react";
-import { type ParameterName, type Texts, textOf, valueSaid } from "../document/parameters";
+import { Images, Pause, Play, Square } from "lucide-react";
+import { type MouseEvent, useRef } from "react";
+import { useStore } from "zustand";
+import { useShallow } from "zustand/react/shallow";
 import type { Run } from "../document/run";
-import { inDigits } from "../document/scale";
-import { ask, askQuietly, notify } from "../document/store";
-import type { Asking, Refused } from "../protocol/connection";
+import { inDigits, inFull } from "../document/scale";
+import {
+  changeRun,
+  forgetProblem,
+  SET,
+  starting,
+  startRun,
+  textsShown,
+  typeParameter,
+} from "../document/starting";
+import { ask, store } from "../document/store";
 import { ParameterFields } from "./ParameterFields";
 import { Fact, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
 import { useStudio } from "./use";
-
-/** What a person may set; the rest has the engine's defaults. */
-const SET = [
-  "population",
-  "insertions",
-  "switches",
-  "toggles",
-  "types",
-  "weighting",
-  "fitness",
-  "selection",
-  "symmetry",
-  "until_springs",
-  "until_differential",
-  "generations",
-  "seed",
-] as const satisfies ParameterName[];
-
-const DEFAULTS: Texts = {
-  population: "100",
-  insertions: "3",
-  switches: "3",
-  toggles: "1",
-  weighting: "exponential",
-  fitness: "suf",
-  selection: "comma",
-  symmetry: "false",
-  until_springs: "2000",
-  until_differential: "0",
-  generations: "300",
-  seed: "1",
-};
-
-type Names = readonly ParameterName[];
-
-const TYPES: Record<string, string> = { recursive: "1", extensible: "1,2,3,4,5", dynamic: "1,6" };
-
-/** Those of them that a run keeps from its start. */
-const FIXED: ParameterName[] = ["population", "seed"];
 
 export function RunSection() {
   const run = useStudio((state) => state.run);
@@ -75,11 +45,7 @@ export function RunSection() {
             is the parent of the next. Your design stays as it is until you take a net over.
           </p>
         )}
-        <Starting
-          key={made?.state.folder ?? ""}
-          run={made}
-          onStart={() => top.current?.scrollIntoView({ block: "start" })}
-        />
+        <Starting run={made} onStart={() => top.current?.scrollIntoView({ block: "start" })} />
         {made && made.state.runs.length > 1 && <Runs run={made} />}
       </Section>
     </div>
@@ -107,8 +73,8 @@ function Runs({ run }: { run: Run }) {
             >
               <b>{one.number ? `Run ${one.number}` : "Run elsewhere"}</b>
               <span>
-                {one.generations} generations, {one.springs.toLocaleString("en")} springs,
-                differential {inDigits(one.force_differential, 4)}
+                {inFull(one.generations)} generations, {inFull(one.springs)} springs, differential{" "}
+                {inDigits(one.force_differential, 4)}
               </span>
               {one.name === name && <em>shown</em>}
             </button>
@@ -174,6 +140,7 @@ function Course({ run }: { run: Run }) {
           Follow in the view
         </label>
       </div>
+      {last && <LookButton stands={status !== "running"} />}
       {run.state.driver && (
         <p className="explain">
           Driven by {run.state.driver}, which does what you ask between two generations.
@@ -190,10 +157,10 @@ function Course({ run }: { run: Run }) {
           </p>
           <RunGraph rows={run.rows} of="springs" own={start_springs} />
           <p className="graph-words">
-            <i className="swatch good" /> springs <b>{last.springs.toLocaleString("en")}</b>
+            <i className="swatch good" /> springs <b>{inFull(last.springs)}</b>
           </p>
           <p className="explain">{reading(start_springs, last.springs, run.state.parameters)}</p>
-          <Fact name="Generations" value={generations} digits={6} />
+          <Fact name="Generations" value={generations} count />
           <Fact
             name="Spring utilization factor"
             value={last.suf}
@@ -205,6 +172,23 @@ function Course({ run }: { run: Run }) {
   );
 }
 
+/** Opens the gallery, which is what a run is for once it stands. */
+function LookButton({ stands }: { stands: boolean }) {
+  const open = useStudio((state) => state.gallery);
+  return (
+    <div className="row">
+      <button
+        type="button"
+        className={stands && !open ? "button icon primary wide" : "button icon wide"}
+        aria-pressed={open}
+        onClick={() => store.setState({ gallery: !open })}
+      >
+        <Images /> {open ? "Hide the individuals" : "Look at individuals"}
+      </button>
+    </div>
+  );
+}
+
 function words(status: string, reason: string): string {
   if (status === "running") return "running";
   if (status === "paused") return "paused";
@@ -213,89 +197,45 @@ function words(status: string, reason: string): string {
 
 /** What a run is started with and changed to, and the buttons that do so, always in reach. */
 function Starting({ run, onStart }: { run: Run | null; onStart(): void }) {
-  const method = useStudio((state) => state.document!.method);
-  const folder = run?.state.folder ?? "";
-  const [open, setOpen] = useState(!folder);
-  const [texts, setTexts] = useState<Texts>(() => textsOf(run?.state.parameters ?? {}, method));
-  const [problems, setProblems] = useState<Texts>({});
+  const { texts, problems, open: wanted } = useStore(starting);
+  const shown = useStudio(useShallow((state) => textsShown(texts, state)));
   const alive = run?.state.status === "running" || run?.state.status === "paused";
-  const send = async (
-    label: string,
-    request: (values: Record<string, unknown>) => Asking,
-    names: Names,
-  ) => {
-    const values = names.map((name) => [name, valueSaid(name, texts[name] ?? "")]);
-    setProblems({});
-    try {
-      await askQuietly(request(Object.fromEntries(values)), label);
-      return true;
-    } catch (error) {
-      const { key, words } = error as Refused;
-      if (names.includes(key as ParameterName)) setProblems({ [key as string]: words });
-      else notify((error as Error).message);
-      setOpen(true);
-      return false;
-    }
+  const open = wanted ?? !run;
+  const start = async (event: MouseEvent) => {
+    if (event.detail > 1) return;
+    if (await startRun()) onStart();
   };
-  const start = async () => {
-    const begun = await send(
-      "Starting the run",
-      (parameters) => ({ type: "evolve", side: "design", parameters }),
-      SET,
-    );
-    if (!begun) return;
-    setOpen(false);
-    onStart();
-  };
-  const change = () =>
-    send(
-      "Changing the parameters",
-      (parameters) => ({ type: "steer_run", what: "change", parameters }),
-      SET.filter((name) => !FIXED.includes(name)),
-    );
   return (
     <>
       <details
         className="parameter-fold"
         open={open}
-        onToggle={(event) => setOpen(event.currentTarget.open)}
+        onToggle={({ currentTarget }) => {
+          // It is also told, later, when the page opened or closed it.
+          if (currentTarget.open !== open) starting.setState({ open: currentTarget.open });
+        }}
       >
         <summary>Parameters of runs</summary>
         {open && (
           <ParameterFields
             names={SET}
-            texts={texts}
+            texts={shown}
             problems={problems}
-            onTake={(name, text) => {
-              setTexts((before) => ({ ...before, [name]: text }));
-              setProblems((before) => ({ ...before, [name]: "" }));
-            }}
+            onTake={typeParameter}
+            onMend={forgetProblem}
           />
         )}
       </details>
       <div className="row start-run">
         <button type="button" className={alive ? "button" : "button primary"} onClick={start}>
-          {folder ? "Start a new run" : "Evolve"}
+          {run ? "Start a new run" : "Evolve"}
         </button>
         {alive && open && (
-          <button type="button" className="button" onClick={change}>
+          <button type="button" className="button" onClick={changeRun}>
             Change from now on
           </button>
         )}
       </div>
     </>
-  );
-}
-
-function textsOf(kept: Record<string, unknown>, method: string): Texts {
-  const texts: Texts = { ...DEFAULTS, types: TYPES[method] ?? "1" };
-  for (const name of SET) if (name in kept) texts[name] = textOf(name, kept[name]);
-  return texts;
-}
-
-/** Parameters of a run for another one that goes on from one of its individuals. */
-export function changeableOf(parameters: Record<string, unknown>): Record<string, unknown> {
-  return Object.fromEntries(
-    SET.flatMap((name) => (parameters[name] == null ? [] : [[name, parameters[name]]])),
   );
 }

@@ -4,7 +4,7 @@ import { measureOf, type Ranking, shareOfPlace } from "../document/choosing";
 import type { Theme } from "../document/palettes";
 import { pinnedRows, type Side, sideOfRow } from "../document/pins";
 import { paretoOf, placeOf } from "../document/run";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { drawSoon, penOf, pixelRatio } from "./canvas";
 import { clickSide, IndividualMenu } from "./IndividualMenu";
 import { pixelOfShare, useRanking } from "./Sorting";
@@ -107,7 +107,7 @@ export function Scatter() {
           ref={canvas}
           style={{ width, height: HEIGHT, cursor: over === null ? "default" : "pointer" }}
           role="img"
-          aria-label={`${ranking.rows.length} individuals by springs and force differential, coloured by ${measureOf(sort).name.toLowerCase()}, ${front.length} of all in the Pareto set`}
+          aria-label={`${inFull(ranking.rows.length)} individuals by springs and force differential, coloured by ${measureOf(sort).name.toLowerCase()}, ${front.length} of all in the Pareto set`}
           onPointerMove={(event) => setOver(nearest(event))}
           onPointerLeave={() => setOver(null)}
           onClick={(event) => {
@@ -118,7 +118,7 @@ export function Scatter() {
       </IndividualMenu>
       <p className="explain">
         {told && over !== null
-          ? `Generation ${told.generation}, individual ${told.individual}: ${individuals.springs[over]} springs, ${inDigits(individuals.differential[over])}; rank ${(ranking.place[over] + 1).toLocaleString("en")} of ${ranking.rows.length.toLocaleString("en")}`
+          ? `Generation ${told.generation}, individual ${told.individual}: ${inFull(individuals.springs[over])} springs, ${inDigits(individuals.differential[over])}; rank ${inFull(ranking.place[over] + 1)} of ${inFull(ranking.rows.length)}`
           : "Springs against force differential. Click to look, right button for more."}
       </p>
     </div>
@@ -187,7 +187,7 @@ function drawAxes(
     context.textAlign = align;
     const at = EDGE.left + share * (width - EDGE.left - EDGE.right);
     context.fillText(
-      inDigits(Math.round(frame.left + share * (frame.right - frame.left)), 6),
+      inFull(Math.round(frame.left + share * (frame.right - frame.left))),
       at,
       HEIGHT - EDGE.bottom + 7,
     );

@@ -2,6 +2,7 @@
 import { grafting } from "../document/grafting";
 import { groupOf } from "../document/net";
 import { plainType } from "../document/quantities";
+import { inFull } from "../document/scale";
 import { selectedRows } from "../document/selection";
 import { commandOf } from "./commands";
 import { useDialogs } from "./dialogs";
@@ -39,13 +40,15 @@ function Cells({ rows }: { rows: number[] }) {
     }
   const kind = kinds.size === 1 ? [...kinds][0] : "";
   return (
-    <Section title={rows.length === 1 ? `Cell ${net.addresses[rows[0]]}` : `${rows.length} cells`}>
+    <Section
+      title={rows.length === 1 ? `Cell ${net.addresses[rows[0]]}` : `${inFull(rows.length)} cells`}
+    >
       <TypePicker cells={rows.map((row) => net.addresses[row])} kind={kind} types={types} />
       <Fact
         name="Level"
         value={[...new Set(rows.map((row) => net.cellLevel[row]))].sort().join(", ")}
       />
-      <Fact name="Springs" value={springs.size} digits={6} />
+      <Fact name="Springs" value={springs.size} count />
       <Fact
         name="Inner force"
         value={inner}
@@ -79,7 +82,7 @@ function Springs({ rows }: { rows: number[] }) {
   }
   const chosen = rows.map((row) => forces[row]);
   return (
-    <Section title={`${rows.length} springs`}>
+    <Section title={`${inFull(rows.length)} springs`}>
       <Fact name="Largest force" value={Math.max(...chosen)} unit="N" />
       <Fact name="Smallest force" value={Math.min(...chosen)} unit="N" />
     </Section>

@@ -3,7 +3,7 @@ import { ArrowDownNarrowWide, ArrowDownWideNarrow } from "lucide-react";
 import { useMemo } from "react";
 import { MEASURES, measureOf, placeOnAxis, type Ranking, rankingOf } from "../document/choosing";
 import { cssGradient, type Theme, tableOf } from "../document/palettes";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { store } from "../document/store";
 import { Choice, IconButton } from "./parts";
 import { useStudio } from "./use";
@@ -74,9 +74,12 @@ export function RankLegend() {
   const sort = useStudio((state) => state.sort);
   const theme = useStudio((state) => state.theme);
   const ranking = useRanking();
-  const { unit } = measureOf(sort);
+  const { unit, counts } = measureOf(sort);
   if (!ranking.known) return null;
-  const value = (at: number) => inDigits(placeOnAxis(individuals, sort.by, ranking.rows[at]), 4);
+  const value = (at: number) => {
+    const known = placeOnAxis(individuals, sort.by, ranking.rows[at]);
+    return counts ? inFull(known) : inDigits(known, 4);
+  };
   return (
     <div className="rank-legend" title="Coloured by rank; the first are drawn on top">
       <span>

@@ -4,7 +4,7 @@ import { type FormEvent, useState } from "react";
 import { LAWS, type LawKey, SENSES, shared } from "../document/laws";
 import { groupOf, type Net } from "../document/net";
 import { lengthsOf } from "../document/quantities";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { selectedRows, springKey } from "../document/selection";
 import { ask, notify, type State, store } from "../document/store";
 import { CurveField, pointsOf } from "./CurveField";
@@ -58,7 +58,8 @@ function scopesOf(net: Net, selection: State["selection"]): Scope[] {
   if (rows.length)
     scopes.push({
       id: "selection",
-      name: rows.length === 1 ? "the selected spring" : `the ${rows.length} selected springs`,
+      name:
+        rows.length === 1 ? "the selected spring" : `the ${inFull(rows.length)} selected springs`,
       explains: "springs that are selected, and those of selected cells",
       choice: { pairs: rows.map((row) => springKey(net, row)) },
       rows,

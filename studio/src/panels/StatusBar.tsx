@@ -1,6 +1,6 @@
 // The bar at the bottom: form-finding and whether it has converged, and what the engine is busy with.
 import { Pause, Play, RotateCcw, StepForward } from "lucide-react";
-import { inDigits } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { move } from "./commands";
 import { Busy, IconButton } from "./parts";
 import { useStudio } from "./use";
@@ -75,7 +75,7 @@ function Residual() {
         className="status-fact"
         title={`Steps since the net was last disturbed; the last one took ${inDigits(1000 * took, 2)} ms`}
       >
-        step <b>{steps}</b>
+        step <b>{inFull(steps)}</b>
       </span>
       {reason && <span className="status-fact warning">{reason}</span>}
     </>
@@ -87,12 +87,11 @@ function Counts() {
   const net = useStudio((state) => state.net);
   const live = useStudio((state) => (state.live?.status ?? "none") !== "none");
   if (!figures) return null;
-  const count = (value: number) => value.toLocaleString("en");
   return (
     <span className="status-fact">
-      <b>{count(live && net ? net.ends.length / 2 : figures.springs)}</b> springs ·{" "}
-      <b>{count(live && net ? net.nodes.length : figures.nodes)}</b> nodes ·{" "}
-      <b>{count(live && net ? net.addresses.length : figures.cells)}</b> cells
+      <b>{inFull(live && net ? net.ends.length / 2 : figures.springs)}</b> springs ·{" "}
+      <b>{inFull(live && net ? net.nodes.length : figures.nodes)}</b> nodes ·{" "}
+      <b>{inFull(live && net ? net.addresses.length : figures.cells)}</b> cells
     </span>
   );
 }

@@ -15,8 +15,10 @@ import {
   Waypoints,
 } from "lucide-react";
 import type { ReactNode } from "react";
-import { springsOfType } from "../document/cellTypes";
+import { springsOfType, typeName } from "../document/cellTypes";
+import { isEvolving, notEditable } from "../document/editable";
 import { store, type ToolId } from "../document/store";
+import { EDITING } from "../tools/hands";
 import { commandOf } from "./commands";
 import { Choice, IconButton, Keys } from "./parts";
 import { useStudio } from "./use";
@@ -80,22 +82,29 @@ const TOOLS: { id: ToolId; icon: ReactNode; help: string }[] = [
 const HELP: Record<string, string> = {
   graft:
     "The ghost follows the pointer over cells and anchors; a click keeps it. R rotates, M mirrors, Enter applies.",
+  evolving:
+    "Click to select. Drag an anchor to move it while the net evolves; Shift: up and down, Ctrl: level.",
+  looking:
+    "Click to select. Drag a node to pull the net, which returns; anchors can be moved once you take it over.",
 };
 
 export function ToolRail() {
   const tool = useStudio((state) => state.tool);
+  const problem = useStudio(notEditable);
   return (
     <nav className="tool-rail" aria-label="Tools">
       {TOOLS.map(({ id, icon }) => {
         const { label, keys } = commandOf(`tool-${id}`);
+        const refused = EDITING.has(id) ? problem : null;
         return (
           <IconButton
             key={id}
             label={label}
+            {...(refused ? { text: `${label}: not now, ${refused}`, "aria-disabled": true } : {})}
             keys={keys}
             side="right"
             pressed={tool === id}
-            onClick={() => store.setState({ tool: id })}
+            onClick={() => refused === null && store.setState({ tool: id })}
           >
             {icon}
           </IconButton>
@@ -105,13 +114,21 @@ export function ToolRail() {
   );
 }
 
+function helpOf(tool: ToolId, problem: string | null, evolves: boolean): string {
+  if (problem && EDITING.has(tool)) return `Not now: ${problem}.`;
+  if (problem && tool === "pull") return evolves ? HELP.evolving : HELP.looking;
+  return HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help;
+}
+
 /** What the tool in the hand does, in a line over the net. */
 export function ToolHelp() {
   const tool = useStudio((state) => state.tool);
+  const problem = useStudio(notEditable);
+  const evolves = useStudio(isEvolving);
   const brushes = tool === "subdivide" || tool === "retype" || tool === "weigh";
   return (
     <div className="tool-help">
-      <span>{HELP[tool] ?? TOOLS.find(({ id }) => id === tool)!.help}</span>
+      <span>{helpOf(tool, problem, evolves)}</span>
       {brushes && (
         <span className="brush-keys">
           Size <Keys keys="[" /> <Keys keys="]" />
@@ -146,9 +163,9 @@ function BrushType() {
       label="Type of the brush"
       hidden
       value={wanted}
-      options={types.map(({ word, name }) => ({
+      options={types.map(({ word }) => ({
         value: word,
-        name: word === name ? word : `${word} ${name}`,
+        name: typeName(word),
         explains: springsOfType(word),
       }))}
       onTake={(brushType) => store.setState({ brushType })}

@@ -44,9 +44,14 @@ export function TopBar() {
             <Redo2 />
           </CommandButton>
           <Hint text="Every command by its name" keys="Ctrl+K">
-            <button type="button" className="search-button" onClick={() => dialogs.open("palette")}>
+            <button
+              type="button"
+              className="search-button"
+              aria-label="Find a command"
+              onClick={() => dialogs.open("palette")}
+            >
               <Search />
-              Find a command
+              <span className="words">Find a command</span>
               <Keys keys="Ctrl+K" />
             </button>
           </Hint>

@@ -1,4 +1,5 @@
 // The type of the selected cells: each that can be given, with its picture, tried while the pointer rests on it.
+import { typeName } from "../document/cellTypes";
 import { grafting } from "../document/grafting";
 import type { CellTypeChoice } from "../protocol/messages";
 import { retype } from "./commands";
@@ -40,7 +41,7 @@ export function TypePicker({
   return (
     <fieldset className="types" aria-label="Type">
       <legend>Type{kind ? "" : ": mixed"}</legend>
-      {types.map(({ word, name }) => (
+      {types.map(({ word }) => (
         <button
           key={word}
           type="button"
@@ -48,7 +49,7 @@ export function TypePicker({
           aria-pressed={word === kind}
           {...(word === kind
             ? {}
-            : foreseen(`type ${name}`, {
+            : foreseen(`type ${typeName(word)}`, {
                 type: "edit_cells",
                 what: "retype",
                 cells,
@@ -58,7 +59,7 @@ export function TypePicker({
           onClick={() => word !== kind && retype(word)}
         >
           <TypePicture word={word} />
-          <span>{name}</span>
+          <span>{typeName(word)}</span>
         </button>
       ))}
     </fieldset>

@@ -2,7 +2,9 @@
 import { Anchor, CircleDot, Grid2x2, Maximize, MoveUpRight, Spline } from "lucide-react";
 import { ContextMenu } from "radix-ui";
 import { type ReactNode, useEffect, useRef, useState } from "react";
+import { comparing } from "../document/comparing";
 import { positionOf } from "../document/motion";
+import type { Pictured } from "../document/pictured";
 import { inDigits } from "../document/scale";
 import { cutOf, keeps } from "../document/section";
 import { clicked, springKey } from "../document/selection";
@@ -20,6 +22,9 @@ import { type Stage, useStage, useStudio } from "./use";
 
 /** Names of anchors are shown while they leave room for the net. */
 const MOST_NAMES = 40;
+
+/** Width that the buttons take at the right edge [px]. */
+const BUTTONS = 60;
 
 export function ViewportPane({
   onStage,
@@ -100,23 +105,38 @@ export function ViewportPane({
   );
 }
 
+interface Named {
+  name: string;
+  place: [number, number];
+}
+
+/** Names of a net's anchors where they are seen, in one half of a comparison or in the whole view. */
+function namesOf(viewport: Viewport, { net, motion }: Pictured, half: 0 | 1 | null): Named[] {
+  if (net.anchors.length > MOST_NAMES) return [];
+  const cut = cutOf(store.getState().view.section, motion.positions);
+  return [...net.anchors].flatMap((node, anchor) => {
+    const there = keeps(cut, motion.positions, node);
+    const place = there ? viewport.project(positionOf(motion, node), half) : null;
+    return place ? [{ name: net.anchorNames[anchor], place }] : [];
+  });
+}
+
 function placeNames(viewport: Viewport, layer: HTMLElement): void {
   const { net, motion, view } = store.getState();
-  const shown =
-    net && motion && view.anchors && net.anchors.length <= MOST_NAMES ? net.anchors.length : 0;
-  while (layer.children.length > shown) layer.lastChild!.remove();
-  while (layer.children.length < shown) layer.append(document.createElement("span"));
-  const cut = motion && cutOf(view.section, motion.positions);
-  for (let anchor = 0; anchor < shown; anchor++) {
-    const name = layer.children[anchor] as HTMLElement;
-    const node = net!.anchors[anchor];
-    const there = keeps(cut, motion!.positions, node);
-    const place = there ? viewport.project(positionOf(motion!, node)) : null;
-    name.hidden = !place;
-    if (!place) continue;
-    if (name.textContent !== net!.anchorNames[anchor]) name.textContent = net!.anchorNames[anchor];
-    name.style.transform = `translate(${Math.round(place[0] + 9)}px, ${Math.round(place[1] - 20)}px)`;
-  }
+  const { sides, nets } = comparing.getState();
+  const pair = ([0, 1] as const).flatMap((half) => {
+    const pictured = nets[half];
+    return pictured ? namesOf(viewport, pictured, half) : [];
+  });
+  const one = net && motion && !sides ? namesOf(viewport, { net, motion }, null) : [];
+  const shown = !view.anchors ? [] : sides ? pair : one;
+  while (layer.children.length > shown.length) layer.lastChild!.remove();
+  while (layer.children.length < shown.length) layer.append(document.createElement("span"));
+  shown.forEach(({ name, place }, at) => {
+    const label = layer.children[at] as HTMLElement;
+    if (label.textContent !== name) label.textContent = name;
+    label.style.transform = `translate(${Math.round(place[0] + 9)}px, ${Math.round(place[1] - 20)}px)`;
+  });
 }
 
 /** The force that it takes to hold the node in the hand, beside it. */
@@ -127,7 +147,10 @@ function placePull(viewport: Viewport, label: HTMLElement): void {
   label.hidden = !place;
   if (!motion || !place) return;
   label.textContent = `${inDigits(motion.header.held_by[0], 3)} N`;
-  label.style.transform = `translate(${Math.round(place[0] + 14)}px, ${Math.round(place[1] + 10)}px)`;
+  // Left of the node where the buttons of the view would hide it.
+  const room = label.parentElement!.clientWidth - BUTTONS - label.offsetWidth;
+  const left = place[0] + 14 < room ? place[0] + 14 : place[0] - 14 - label.offsetWidth;
+  label.style.transform = `translate(${Math.round(left)}px, ${Math.round(place[1] + 10)}px)`;
 }
 
 const VIEWS: { view: StandardView; name: string; letter: string; keys: string }[] = [

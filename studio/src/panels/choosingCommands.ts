@@ -49,7 +49,7 @@ export const CHOOSING_COMMANDS: Command[] = [
   },
   {
     id: "gallery",
-    label: "Show or hide the pictures of individuals",
+    label: "Gallery: show or hide the pictures of individuals",
     group: "Choosing",
     keys: "U",
     refused: needsRun,

@@ -1,9 +1,21 @@
 // Every command of the studio, once: for keys, menus, the palette and the sheet of keys.
 import { isComparing } from "../document/comparing";
+import { isEvolving, notEditable } from "../document/editable";
 import { grafting } from "../document/grafting";
 import { plainType } from "../document/quantities";
+import { inFull } from "../document/scale";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
-import { ask, changeView, type State, select, store, type ToolId } from "../document/store";
+import { startRun } from "../document/starting";
+import {
+  ask,
+  changeView,
+  openPanel,
+  type PanelId,
+  type State,
+  select,
+  store,
+  type ToolId,
+} from "../document/store";
 import { inTurn } from "../document/turns";
 import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
@@ -48,15 +60,22 @@ export interface Dialogs {
   open(dialog: "palette" | "keys" | "save" | "start"): void;
 }
 
-const needsCells = ({ selection }: State) =>
-  selection.kind === "cells" && selection.keys.length ? null : "select cells first";
-const needsOneNode = ({ selection }: State) =>
-  selection.kind === "nodes" && selection.keys.length === 1 ? null : "select one node first";
-const needsSpring = ({ selection }: State) =>
+const oneSpring = ({ selection }: State) =>
   selection.kind === "springs" && selection.keys.length === 1 ? null : "select one spring first";
 
-const needsLive = ({ live }: State) =>
-  live && live.status !== "none" ? null : "nothing evolves live";
+// Each for what edits them.
+const needsCells = (state: State) =>
+  notEditable(state) ??
+  (state.selection.kind === "cells" && state.selection.keys.length ? null : "select cells first");
+const needsOneNode = (state: State) =>
+  notEditable(state) ??
+  (state.selection.kind === "nodes" && state.selection.keys.length === 1
+    ? null
+    : "select one node first");
+const needsSpring = (state: State) => notEditable(state) ?? oneSpring(state);
+
+const needsLive = (state: State) => (isEvolving(state) ? null : "nothing evolves live");
+const whileEvolving = (state: State) => (isEvolving(state) ? notEditable(state) : null);
 
 function cells(): string[] {
   const { selection } = store.getState();
@@ -102,7 +121,7 @@ export function seek(steps: number): void {
     const { document } = store.getState();
     const kind = document?.cell_types.find(({ word }) => word === "1")?.word ?? "1";
     const orbit = grafting.getState().lock;
-    ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${steps} steps`);
+    ask({ type: "seek_stress", steps, kind, orbit }, `Seeking stress, ${inFull(steps)} steps`);
   });
 }
 
@@ -131,6 +150,16 @@ export function selectExtreme(most: boolean): () => void {
     select({ kind: "springs", keys: [springKey(net, best)] });
   };
 }
+
+/** Panels by what a person may look for. */
+const PANELS: { id: PanelId; label: string }[] = [
+  { id: "net", label: "Net: open its panel" },
+  { id: "cells", label: "Cells: open their panel" },
+  { id: "framework", label: "Framework: open its panel" },
+  { id: "evolve", label: "Evolve: open its panel" },
+  { id: "graft", label: "Graft: open its panel, with patches" },
+  { id: "history", label: "History: open its panel" },
+];
 
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
@@ -177,12 +206,20 @@ export const COMMANDS: Command[] = [
     keys: "Shift+R",
     run: () => move("reset"),
   },
-  { id: "seek", label: "Seek stress, one step", group: "Net", keys: "G", run: () => seek(1) },
+  {
+    id: "seek",
+    label: "Seek stress, one step",
+    group: "Net",
+    keys: "G",
+    refused: notEditable,
+    run: () => seek(1),
+  },
   {
     id: "seek10",
     label: "Seek stress, ten steps",
     group: "Net",
     keys: "Shift+G",
+    refused: notEditable,
     run: () => seek(10),
   },
   {
@@ -275,7 +312,7 @@ export const COMMANDS: Command[] = [
     id: "same-force",
     label: "Select springs of about the same force",
     group: "Springs and nodes",
-    refused: needsSpring,
+    refused: oneSpring,
     run: selectSameForce,
   },
   {
@@ -308,6 +345,7 @@ export const COMMANDS: Command[] = [
     label: "Subdivide with a brush",
     group: "Tools",
     keys: "B",
+    refused: notEditable,
     run: tool("subdivide"),
   },
   {
@@ -315,10 +353,25 @@ export const COMMANDS: Command[] = [
     label: "Give types with a brush",
     group: "Tools",
     keys: "Shift+B",
+    refused: notEditable,
     run: tool("retype"),
   },
-  { id: "tool-cut", label: "Cut springs", group: "Tools", keys: "X", run: tool("cut") },
-  { id: "tool-add", label: "Add springs", group: "Tools", keys: "A", run: tool("add") },
+  {
+    id: "tool-cut",
+    label: "Cut springs",
+    group: "Tools",
+    keys: "X",
+    refused: notEditable,
+    run: tool("cut"),
+  },
+  {
+    id: "tool-add",
+    label: "Add springs",
+    group: "Tools",
+    keys: "A",
+    refused: notEditable,
+    run: tool("add"),
+  },
   {
     id: "tool-weigh",
     label: "Brush where evolution grows",
@@ -341,6 +394,15 @@ export const COMMANDS: Command[] = [
         failed: "discard",
       } as const;
       ask({ type: "live_evolve", what: what[status], parameters: {} }, "Evolving");
+    },
+  },
+  {
+    id: "start-run",
+    label: "Evolve: start a run",
+    group: "Net",
+    run: () => {
+      openPanel("evolve");
+      startRun();
     },
   },
   {
@@ -376,6 +438,13 @@ export const COMMANDS: Command[] = [
     acts: true,
     run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
   },
+  ...PANELS.map(({ id, label }) => ({
+    id: `panel-${id}`,
+    label,
+    group: "View" as const,
+    refused: () => (isComparing() ? "close the comparison first" : null),
+    run: () => openPanel(id),
+  })),
   {
     id: "fit",
     label: "Fit the net",
@@ -479,7 +548,8 @@ export const COMMANDS: Command[] = [
     label: "Undo",
     group: "Document",
     keys: "Ctrl+Z",
-    refused: ({ document }) => (document?.position ? null : "nothing was done"),
+    refused: (state) =>
+      whileEvolving(state) ?? (state.document?.position ? null : "nothing was done"),
     acts: true,
     run: () => undo(false),
   },
@@ -488,8 +558,11 @@ export const COMMANDS: Command[] = [
     label: "Redo",
     group: "Document",
     keys: "Ctrl+Shift+Z",
-    refused: ({ document }) =>
-      document && document.position < document.length ? null : "nothing was undone",
+    refused: (state) =>
+      whileEvolving(state) ??
+      (state.document && state.document.position < state.document.length
+        ? null
+        : "nothing was undone"),
     acts: true,
     run: () => undo(true),
   },

@@ -1,6 +1,7 @@
 // What is told once it is done, with the way back: nets that are taken over, kept or discarded.
 import { toast } from "sonner";
 import { shownSide } from "../document/pins";
+import { inFull } from "../document/scale";
 import { ask, notify, store } from "../document/store";
 
 /** Makes what is looked at the design. */
@@ -19,7 +20,7 @@ export async function keepGrown(): Promise<void> {
   if (!reply) return;
   if (store.getState().document?.position === document?.position)
     toast.message("Nothing better grew; your design is as it was", { id: "done" });
-  else confirmAction(`Your design is now what grew in ${generation} generations`);
+  else confirmAction(`Your design is now what grew in ${inFull(generation)} generations`);
 }
 
 /** Goes back to the design; what evolved live can be brought back. */

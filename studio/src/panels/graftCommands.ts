@@ -1,13 +1,24 @@
 // Commands of selecting cells and of grafting, and whether edits go to the whole orbit.
 import { grafting } from "../document/grafting";
-import { applyGraft, invertSelection, selectAll, selectBy, turnGhost } from "../document/planning";
+import {
+  applyGraft,
+  copyPatch,
+  freeName,
+  invertSelection,
+  mayApply,
+  placesSeenFrom,
+  selectAll,
+  selectBy,
+  turnGhost,
+} from "../document/planning";
 import { selectedRows } from "../document/selection";
-import { type State, store, type ToolId } from "../document/store";
+import { openPanel, type State, store, type ToolId } from "../document/store";
 import { wordsOf } from "../tools/selecting";
 import type { Command } from "./commands";
 
 const needsCells = ({ selection }: State) =>
   selection.kind === "cells" && selection.keys.length ? null : "select cells first";
+const needsGhost = () => (grafting.getState().chosen ? null : "take a patch first");
 const inHand = ({ tool }: State) => tool === "graft";
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
@@ -35,6 +46,7 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Grafting",
     keys: "R",
     when: inHand,
+    refused: needsGhost,
     run: () => turnGhost({ rotate: 1 }),
   },
   {
@@ -43,6 +55,7 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Grafting",
     keys: "M",
     when: inHand,
+    refused: needsGhost,
     run: () => turnGhost({ mirror: true }),
   },
   {
@@ -51,8 +64,19 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Grafting",
     keys: "Enter",
     when: inHand,
+    refused: () => needsGhost() ?? (mayApply() ? null : "click a cell or an anchor first"),
     acts: true,
     run: () => void applyGraft(),
+  },
+  {
+    id: "copy-patch",
+    label: "Copy the selected cells as a patch",
+    group: "Grafting",
+    refused: needsCells,
+    run: () => {
+      openPanel("graft");
+      copyPatch(freeName(), placesSeenFrom()[0]);
+    },
   },
   {
     id: "lock",

@@ -2,7 +2,7 @@
 import { LoaderCircle } from "lucide-react";
 import { Tooltip } from "radix-ui";
 import { type ComponentProps, type ReactNode, useEffect, useRef, useState } from "react";
-import { inDigits } from "../document/scale";
+import { changeInDigits, inDigits, inFull } from "../document/scale";
 import { useStudio } from "./use";
 
 /** What is waited for, if anything is. */
@@ -65,6 +65,7 @@ export function Hint({
 /** A button that shows an icon and is named by its tooltip. */
 export function IconButton({
   label,
+  text = label,
   keys,
   side,
   pressed,
@@ -72,12 +73,14 @@ export function IconButton({
   ...rest
 }: {
   label: string;
+  /** What its tooltip says, if not its name. */
+  text?: string;
   keys?: string | undefined;
   side?: "top" | "right" | "bottom" | "left";
   pressed?: boolean;
 } & ComponentProps<"button">) {
   return (
-    <Hint text={label} keys={keys} {...(side ? { side } : {})}>
+    <Hint text={text} keys={keys} {...(side ? { side } : {})}>
       <button
         type="button"
         className="icon-button"
@@ -110,15 +113,6 @@ export function Section({
       {children}
     </section>
   );
-}
-
-// Two equilibria of one net agree to about this, relative to the value.
-const AGREEMENT = 1e-7;
-
-/** Whether two measures differ by more than the solver's tolerance. */
-function differs(one: number, other: number): boolean {
-  const difference = Math.abs(one - other);
-  return difference > 1e-12 && difference > AGREEMENT * Math.max(Math.abs(one), Math.abs(other));
 }
 
 function FactName({
@@ -154,6 +148,7 @@ export function Fact({
   before,
   better,
   digits = 4,
+  count = false,
   title,
   onPick,
 }: {
@@ -164,25 +159,28 @@ export function Fact({
   /** Which way is better; without it a change is only told. */
   better?: "less" | "more";
   digits?: number;
+  /** Whether it is a count, which is written out. */
+  count?: boolean;
   title?: string;
   /** Shows on the net what the value is of. */
   onPick?(): void;
 }) {
-  const changed = typeof value === "number" && typeof before === "number" && differs(value, before);
-  const change = changed ? value - before : 0;
-  const good = better && (better === "less" ? change < 0 : change > 0);
+  const known = typeof value === "number" && typeof before === "number";
+  const rise = known ? value - before : 0;
+  const change = !known
+    ? null
+    : count
+      ? rise && `${rise > 0 ? "+" : "−"}${inFull(Math.abs(rise))}`
+      : changeInDigits(value, before, digits);
+  const good = better && (better === "less" ? rise < 0 : rise > 0);
   const tone = !better ? "" : good ? "good" : "bad";
+  const shown = typeof value === "string" ? value : count ? inFull(value) : inDigits(value, digits);
   return (
     <div className="fact">
       <FactName name={name} title={title} onPick={onPick} />
       <span className="fact-value">
-        {changed && (
-          <span className={`fact-change ${tone}`}>
-            {change > 0 ? "+" : "−"}
-            {inDigits(Math.abs(change), 3)}
-          </span>
-        )}
-        <span>{typeof value === "string" ? value : inDigits(value, digits)}</span>
+        {change && <span className={`fact-change ${tone}`}>{change}</span>}
+        <span>{shown}</span>
         <span className="unit">{unit}</span>
       </span>
     </div>

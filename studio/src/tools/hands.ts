@@ -1,5 +1,6 @@
 // From pointer events on the canvas to the tool in the hand; what the tool leaves alone moves the eye.
-import { store, type ToolId } from "../document/store";
+import { notEditable } from "../document/editable";
+import { notify, store, type ToolId } from "../document/store";
 import type { Hit } from "../viewport/picking";
 import type { Viewport } from "../viewport/scene";
 import { Brushing } from "./brushing";
@@ -14,6 +15,9 @@ const CLICK_REACH = 4; // px
 
 /** Time between two moves of a direct drag [ms]; the engine makes no more than 60 steps a second by itself. */
 const DIRECT_EVERY = 8;
+
+/** Tools that edit the net. */
+export const EDITING: ReadonlySet<ToolId> = new Set(["subdivide", "retype", "cut", "add"]);
 
 /** A button that is down. */
 interface Press {
@@ -91,11 +95,17 @@ export class Hands {
     return this.tools[store.getState().tool];
   }
 
+  /** Why the tool can't do its work now. */
+  private refused(): string | null {
+    const state = store.getState();
+    return EDITING.has(state.tool) ? notEditable(state) : null;
+  }
+
   private down(event: PointerEvent): void {
     if (event.button !== 0) return;
     const pointer = this.pointer(event);
     const hit = this.viewport.pick(pointer.x, pointer.y, this.tool.reach);
-    const taken = this.tool.down(this.viewport, hit, pointer);
+    const taken = this.refused() === null && this.tool.down(this.viewport, hit, pointer);
     this.press = { x: pointer.x, y: pointer.y, hit, taken, far: false };
     this.viewport.eye.controls.enabled = !taken;
     if (taken) this.canvas.setPointerCapture(event.pointerId);
@@ -153,7 +163,9 @@ export class Hands {
       this.tool.drag(this.viewport, this.dragHit(pointer), pointer);
       this.tool.drop(this.viewport, pointer);
     } else if (!far) {
-      this.tool.click(this.viewport, press.hit, pointer);
+      const refused = this.refused();
+      if (refused !== null) notify(refused);
+      else this.tool.click(this.viewport, press.hit, pointer);
     }
   }
 

@@ -1,5 +1,6 @@
 // Pull: a click selects; a node that is dragged pulls the net, an anchor that is dragged stays there.
 import * as THREE from "three";
+import { isEvolving, notEditable } from "../document/editable";
 import { positionOf } from "../document/motion";
 import { clicked, NOTHING, springKey } from "../document/selection";
 import { ask, select, store, tell } from "../document/store";
@@ -29,15 +30,16 @@ export class Pulling implements Tool {
   private held: Held | null = null;
 
   down(viewport: Viewport, hit: Hit | null, pointer: Pointer): boolean {
-    const { net, motion, live } = store.getState();
+    const state = store.getState();
+    const { net, motion } = state;
     const arm = viewport.armUnder(pointer.x, pointer.y);
     const node = arm?.node ?? (hit?.kind === "node" ? hit.row : null);
     if (node === null || !net || !motion) return false;
     const place = positionOf(motion, node);
     const seen = viewport.project(place) ?? [pointer.x, pointer.y];
     const number = net.anchors.indexOf(node);
-    // While the net evolves it can only be pulled by its anchors.
-    if (number < 0 && (live?.status ?? "none") !== "none") return false;
+    // While the net evolves it can only be pulled by its anchors, and what is looked at only by other nodes.
+    if (notEditable(state) !== null && number < 0 === isEvolving(state)) return false;
     this.held = {
       axis: arm?.axis ?? null,
       key: net.nodes[node],

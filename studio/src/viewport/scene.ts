@@ -169,10 +169,12 @@ export class Viewport {
   }
 
   /** Where a place of the net is on the canvas [px]; null if it is behind the eye. */
-  project([x, y, z]: [number, number, number]): [number, number] | null {
+  project([x, y, z]: [number, number, number], half: 0 | 1 | null = null): [number, number] | null {
     const seen = new THREE.Vector3(x, y, z).project(this.eye.camera);
-    if (seen.z > 1) return null;
-    return [(seen.x + 1) * 0.5 * this.width, (1 - seen.y) * 0.5 * this.height];
+    if (seen.z > 1 || (half !== null && Math.abs(seen.x) > 1)) return null;
+    const width = half === null ? this.width : this.width / 2;
+    const left = half === 1 ? width : 0;
+    return [left + (seen.x + 1) * 0.5 * width, (1 - seen.y) * 0.5 * this.height];
   }
 
   /** The arm of the selected node under a point of the canvas [px]. */
