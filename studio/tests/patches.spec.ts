@@ -1,4 +1,7 @@
 // Patches: turned over, renamed, deleted; and what is refused, with the engine's own words.
+import { execFileSync } from "node:child_process";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
 import type { Page } from "@playwright/test";
 import {
   anchorPlace,
@@ -22,6 +25,29 @@ async function copied(page: Page, name: string): Promise<void> {
 async function toast(page: Page, words: string | RegExp): Promise<void> {
   await expect(page.locator("[data-sonner-toast]", { hasText: words }).first()).toBeVisible();
 }
+
+test("the anchor that is worth copying is found", async ({ page, visit, home }) => {
+  await visit("three-cylinders");
+  // Two cells divided leave no symmetry, so that one anchor alone is the best.
+  for (const [done, name] of ["A4", "A9"].entries()) {
+    await clickCellAbove(page, await anchorPlace(page, name));
+    await page.keyboard.press("s");
+    await expect.poll(async () => (await documentOf(page)).position).toBe(done + 1);
+    await converged(page);
+  }
+  const { hash, origin, search } = new URL(page.url());
+  const path = `/api/documents/${hash.slice(1)}/export/toml${search}`;
+  const design = join(home, "design.toml");
+  writeFileSync(design, await (await page.request.get(`${origin}${path}`)).body());
+  const words = ["patch", design, "--anchor", "best", "--out", join(home, "patch.toml"), "--json"];
+  const springform = join(import.meta.dirname, "../../.venv/bin/springform");
+  const patch = JSON.parse(execFileSync(springform, words).toString());
+  await page.keyboard.press("Escape");
+  await page.getByRole("tab", { name: "Graft", exact: true }).click();
+  await page.getByRole("button", { name: "Rings round the best anchor" }).click();
+  await expect(page.getByLabel("Seen from")).toHaveValue(`anchor ${patch.anchor}`);
+  await expect(page.locator(".panel-graft")).toContainText(`${patch.cells} cells selected`);
+});
 
 test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
   await visit("three-cylinders-quad");

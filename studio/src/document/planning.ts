@@ -1,6 +1,8 @@
 // What is asked of the engine for selections and grafts; problems of a plan are shown where it is.
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
 import { type Grafting, grafting, type Place, putAway } from "./grafting";
+import type { Motion } from "./motion";
+import type { Net } from "./net";
 import { NOTHING } from "./selection";
 import { ask, askQuietly, select, selecting, store } from "./store";
 
@@ -45,6 +47,25 @@ export function invertSelection(): void {
 export function selectAll(): void {
   const { net } = store.getState();
   select(net ? { kind: "cells", keys: [...net.addresses] } : NOTHING);
+}
+
+/** Row of the anchor at which the largest force is least: the one that is resolved best. */
+export function bestAnchor({ anchors, ends }: Net, { forces }: Motion): number {
+  const peaks = new Map([...anchors].map((node) => [node, 0]));
+  for (let at = 0; at < ends.length; at++) {
+    const peak = peaks.get(ends[at]);
+    if (peak !== undefined) peaks.set(ends[at], Math.max(peak, forces[at >> 1]));
+  }
+  const sizes = [...anchors].map((node) => peaks.get(node)!);
+  return sizes.indexOf(Math.min(...sizes));
+}
+
+/** Selects the two rings of cells round the anchor that is resolved best. */
+export function selectBestAnchor(): void {
+  const { net, motion } = store.getState();
+  if (!net?.anchors.length || !motion || motion.header.revision !== net.revision) return;
+  const node = net.nodes[net.anchors[bestAnchor(net, motion)]];
+  selectBy({ words: `rings("${node}", 2)` }, false);
 }
 
 /** Anchors at the corners of the selected cells. */

@@ -12,6 +12,7 @@ import {
   freeName,
   mayApply,
   placesSeenFrom,
+  selectBestAnchor,
   takePatch,
   turnGhost,
 } from "../document/planning";
@@ -20,7 +21,7 @@ import type { GraftFigures, PatchEntry } from "../protocol/messages";
 import "./graft.css";
 import { inDigits, inFull } from "../document/scale";
 import { toggleLock } from "./graftCommands";
-import { Choice, IconButton, NameField, type Option, Section } from "./parts";
+import { Choice, Hint, IconButton, NameField, type Option, Section } from "./parts";
 import { useStudio } from "./use";
 
 export function useGrafting<T>(what: (state: Grafting) => T): T {
@@ -59,10 +60,19 @@ function Copying() {
       aside={<span className="aside">{count ? `${inFull(count)} cells selected` : ""}</span>}
     >
       {count === 0 ? (
-        <p className="explain">
-          Select cells, by a lasso (⇧L) or in rings round an anchor (O), also of an individual of a
-          run. What is copied can be set elsewhere, in other nets too.
-        </p>
+        <>
+          <p className="explain">
+            Select cells, by a lasso (⇧L) or in rings round an anchor (O), also of an individual of
+            a run. What is copied can be set elsewhere, in other nets too.
+          </p>
+          <div className="row">
+            <Hint text="Selects two rings of cells round the anchor where the largest force is least: worth copying to the others">
+              <button type="button" className="button" onClick={selectBestAnchor}>
+                Rings round the best anchor
+              </button>
+            </Hint>
+          </div>
+        </>
       ) : (
         <>
           <Choice label="Seen from" value={seen.value} options={options} onTake={setFrom} />

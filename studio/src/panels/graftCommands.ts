@@ -8,6 +8,7 @@ import {
   mayApply,
   placesSeenFrom,
   selectAll,
+  selectBestAnchor,
   selectBy,
   turnGhost,
 } from "../document/planning";
@@ -99,6 +100,13 @@ export const GRAFT_COMMANDS: Command[] = [
     group: "Selecting",
     keys: "O",
     run: tool("ring"),
+  },
+  {
+    id: "best-anchor",
+    label: "Select rings round the best anchor, where the largest force is least",
+    group: "Selecting",
+    acts: true,
+    run: selectBestAnchor,
   },
   { id: "tool-row", label: "Select rows", group: "Selecting", keys: "Shift+Q", run: tool("row") },
   {
