@@ -113,18 +113,26 @@ def test_a_buckled_rod_is_the_elastica(degrees: float, record_property: Any) -> 
         assert_order(values, record_property, name)
 
 
-def strut(count: int, load: float, axial: float, *, rise: float = 0.0) -> sf.Network:
-    """A rod of length 1 and EI = 1 on a pin, pushed at its other end, which stays on the axis."""
-    positions = np.zeros((count + 1, 3))
-    positions[:, 0] = np.linspace(0, 1, count + 1)
-    positions[:, 2] = rise * np.sin(np.pi * positions[:, 0])
-    loads = np.zeros((count + 1, 3))
-    loads[-1, 0] = -load
+def strut(
+    count: int, load: float, axial: float, *, rise: float = 0.0, wind: float = 0.0
+) -> sf.Network:
+    """A rod of length 1 and EI = 1 on a pin, pushed at its other end, which stays on the axis.
+
+    `wind` presses on a cell beside it, all of whose nodes are held.
+    """
+    positions = np.zeros((count + 4, 3))
+    positions[: count + 1, 0] = np.linspace(0, 1, count + 1)
+    positions[: count + 1, 2] = rise * np.sin(np.pi * positions[: count + 1, 0])
+    held = range(count + 1, count + 4)
+    positions[held] = [[0, 0, 1], [0, 1, 1], [1, 0, 1]]
+    loads = np.zeros((count + 4, 3))
+    loads[count, 0] = -load
     return sf.Network(
-        positions, list(pairwise(range(count + 1))), [0], axial_stiffness=axial,
+        positions, list(pairwise(range(count + 1))), [0, *held], axial_stiffness=axial,
         rest_length=1 / count, loads=loads,
         rods=[sf.Rod(range(count + 1), 1.0, lengths=[1 / count] * count)],
         fixed_axes=[*in_plane(count + 1), (count, "z")],
+        pressure=[(held, wind)] if wind else [],
     )  # fmt: skip
 
 
@@ -139,7 +147,7 @@ def test_a_straight_rod_buckles_at_eulers_load() -> None:
     # The second as straight as can be: Newton's steps end there above the load too.
     for rise in (1e-3, 0.0):
         below, above = (
-            np.abs(solved(strut(32, load, 1e6, rise=rise)).positions[:, 2]).max()
+            np.abs(solved(strut(32, load, 1e6, rise=rise)).positions[:33, 2]).max()
             for load in (0.98 * np.pi**2, 1.02 * np.pi**2)
         )
         assert below < 1e-6
@@ -147,16 +155,18 @@ def test_a_straight_rod_buckles_at_eulers_load() -> None:
 
 
 @pytest.mark.parametrize("share", [1.1, 1.5, 2.0])
+@pytest.mark.parametrize("wind", [0.0, 1.0])
 def test_a_straight_strut_above_eulers_load_becomes_the_elastica(
-    share: float, record_property: Any
+    share: float, wind: float, record_property: Any
 ) -> None:
+    """Also where loads follow the shape, though not on the strut."""
     load = share * np.pi**2
     distance, rise = elastica(load)
     errors: dict[str, list[float]] = {"distance": [], "rise": []}
     for count in COUNTS[1:]:
-        result = solved(strut(count, load, AXIAL))
-        errors["distance"].append(abs(result.positions[-1, 0] - distance))
-        errors["rise"].append(abs(np.abs(result.positions[:, 2]).max() - rise))
+        result = solved(strut(count, load, AXIAL, wind=wind))
+        errors["distance"].append(abs(result.positions[count, 0] - distance))
+        errors["rise"].append(abs(np.abs(result.positions[: count + 1, 2]).max() - rise))
     for name, values in errors.items():
         assert_order(values, record_property, name)
 
@@ -167,9 +177,9 @@ def test_a_strut_far_above_eulers_load_turns_over(axial: float, share: float) ->
     # ends straight on the other side of its pin, pulled.
     load = share * np.pi**2
     result = solved(strut(32, load, axial))
-    assert result.positions[-1, 0] == pytest.approx(-1 - load / axial, rel=1e-9)
+    assert result.positions[32, 0] == pytest.approx(-1 - load / axial, rel=1e-9)
     np.testing.assert_allclose(result.forces, load, rtol=1e-6)
-    np.testing.assert_allclose(result.positions[:, 2], 0.0, atol=1e-9)
+    np.testing.assert_allclose(result.positions[:33, 2], 0.0, atol=1e-9)
 
 
 def test_a_strut_that_is_not_given_the_steps_to_leave_says_so() -> None:
@@ -182,7 +192,7 @@ def test_a_strut_that_is_not_given_the_steps_to_leave_says_so() -> None:
         assert not result.converged
         if "would not stay" in result.reason:
             straight += 1
-            np.testing.assert_allclose(result.positions[:, 2], 0.0, atol=1e-9)
+            np.testing.assert_allclose(result.positions[:33, 2], 0.0, atol=1e-9)
     assert straight > 0
 
 

@@ -30,6 +30,9 @@ const MOST_ROUNDS: u32 = 3;
 /// Most times that loads follow the shape.
 const MOST_FOLLOWED: u32 = 200;
 
+/// Most rests that a net under loads that follow the shape leaves.
+const MOST_LEFT: u32 = 10;
+
 /// Part of a spring's length by which nodes that coincide are parted, so that it has a direction.
 const PARTING: f64 = 1e-6;
 
@@ -118,21 +121,56 @@ impl Solver {
         self.layout.symbolic.order().iter().map(|&row| self.supports.nodes[row as usize])
     }
 
-    /// Solves under loads that follow the shape: again and again under the loads that the last shape gives.
+    /// Solves under loads that follow the shape, and goes on from a rest that would not last if its loads kept their
+    /// directions, as long as that leads to another.
     fn follow(&mut self, network: &Network<'_>, settings: &Settings) -> Equilibrium {
-        let rest = Equilibrium::at(network, network.positions.to_vec(), Status::Converged, 0);
+        let mut rest = self.follow_from(network, settings, &network.positions, settings.iterations);
+        for _ in 0..MOST_LEFT {
+            let left = settings.iterations.saturating_sub(rest.iterations + 1);
+            if rest.status != Status::Converged || left == 0 || !may_be_unstable(network) {
+                break;
+            }
+            let mut loads = vec![[0.0; 3]; rest.positions.len()];
+            follow(network, &rest.positions, &mut loads);
+            self.elements.build(network, &loads);
+            let Solver { supports, elements, layout, newton, .. } = self;
+            let hill = Hill { network, elements, supports, layout, least_force: least_force_scale(network) };
+            let positions: Vec<Lanes> = rest.positions.iter().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+            let pushed = pushes(hill, &positions, settings.tolerance);
+            let way = if pushed { way_off(hill, &mut newton.tangent, &positions) } else { None };
+            let Some(moved) = way else { break };
+            let moved: Vec<Vector> = moved.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
+            let next = self.follow_from(network, settings, &moved, left);
+            // Loads that follow may hold what they would not hold otherwise.
+            if next.status != Status::Converged {
+                break;
+            }
+            rest = Equilibrium { iterations: rest.iterations + 1 + next.iterations, ..next };
+        }
+        rest
+    }
+
+    /// Solves under loads that follow the shape: again and again under the loads that the last shape gives.
+    fn follow_from(
+        &mut self,
+        network: &Network<'_>,
+        settings: &Settings,
+        start: &[Vector],
+        limit: u32,
+    ) -> Equilibrium {
+        let rest = Equilibrium::at(network, start.to_vec(), Status::Converged, 0);
         if rest.residual <= settings.tolerance {
             return Equilibrium { method: Method::Newton, ..rest };
         }
         let inner = Settings { tolerance: 0.1 * settings.tolerance, ..*settings };
         let mut accelerated = Accelerated::default();
-        let mut start = network.positions.to_vec();
+        let mut start = start.to_vec();
         let mut best: Option<Equilibrium> = None;
         let mut iterations = 0;
         for _ in 0..MOST_FOLLOWED {
             let mut loads = vec![[0.0; 3]; start.len()];
             follow(network, &start, &mut loads);
-            let left = settings.iterations.saturating_sub(iterations);
+            let left = limit.saturating_sub(iterations);
             let (moved, status, used, method) = self.still(network, &inner, &start, Some(&loads), left);
             iterations += used;
             let state =
@@ -161,7 +199,7 @@ impl Solver {
     }
 
     /// Solves under dead loads, `more` on top of the network's: positions, status, iterations, method. `more` stands for
-    /// loads that follow the shape; whether a rest under them is stable is not looked at, for they have a say in it.
+    /// loads that follow the shape; whether a rest under them is stable is not looked at here, for they are on their way.
     fn still(
         &mut self,
         network: &Network<'_>,
