@@ -571,7 +571,6 @@ export const COMMANDS: Command[] = [
     label: "Save",
     group: "Document",
     keys: "Ctrl+S",
-    acts: true,
     run: ({ dialogs }) => {
       if (store.getState().document?.file)
         ask({ type: "save", path: null, replace: false }, "Saving");
