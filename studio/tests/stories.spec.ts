@@ -261,7 +261,7 @@ test("keys pressed quickly one after the other find what those before them did",
   await expect(page.getByText("select one spring first")).toBeVisible();
   expect((await documentOf(page)).history.at(-1)!.label).toBe("Cut a spring");
   // What turns something on and off does so.
-  for (const _ of [1, 2, 3]) await page.keyboard.press("p");
+  await page.keyboard.press("p");
   await page.getByRole("tab", { name: "Evolve" }).click();
   await expect(page.getByRole("list", { name: "Pinned nets" }).getByRole("listitem")).toHaveCount(
     1,
@@ -271,22 +271,32 @@ test("keys pressed quickly one after the other find what those before them did",
   await expect(page.locator(".looking.live")).toContainText("paused");
   await page.getByRole("button", { name: "Discard" }).dblclick();
   await expect(page.locator(".looking.live")).toBeHidden();
-  await expect(error).toHaveCount(0);
+  expect(await error.allTextContents()).toEqual([]);
 });
 
 test("a second stroke of the brush leaves alone what the first one divided", async ({
   page,
   visit,
 }) => {
+  // Whatever the engine says comes late, so that the page still shows the whole cell.
+  let late = 0;
+  await page.routeWebSocket(/\/socket/, (socket) => {
+    const engine = socket.connectToServer();
+    engine.onMessage((message) => setTimeout(() => socket.send(message), late));
+  });
   await visit("three-cylinders");
   const cell = await cellAbove(page, await anchorPlace(page, "A4"));
   await page.keyboard.press("b");
-  for (const _ of [1, 2, 3]) {
+  late = 1500;
+  for (const _ of [1, 2]) {
     await page.mouse.move(cell.x + 1, cell.y);
     await page.mouse.down();
     await page.mouse.up();
   }
+  await page.waitForTimeout(2 * late);
+  // Now, since it would go away by itself.
+  expect(await page.locator('[data-sonner-toast][data-type="error"]').count()).toBe(0);
+  late = 0;
   await expect.poll(async () => (await documentOf(page)).position).toBeGreaterThan(0);
   await converged(page);
-  await expect(page.locator('[data-sonner-toast][data-type="error"]')).toHaveCount(0);
 });

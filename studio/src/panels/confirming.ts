@@ -7,13 +7,16 @@ import { ask, notify, store } from "../document/store";
 /** Makes what is looked at the design. */
 export async function takeOver(): Promise<void> {
   const { document } = store.getState();
-  const label = document?.looking?.label ?? "";
+  // The button is still there for a moment when it is pressed twice; so it is below.
+  if (!document?.looking) return;
+  const { label } = document.looking;
   const reply = await ask({ type: "reinstate", side: shownSide(document) }, "Taking it over");
   if (reply) confirmAction(`Your design is now: ${label}`);
 }
 
 /** Makes the net that evolves live the design. */
 export async function keepGrown(): Promise<void> {
+  if (!isGrown()) return;
   const { live, document } = store.getState();
   const generation = live?.generation ?? 0;
   const reply = await ask({ type: "live_evolve", what: "keep", parameters: {} }, "Keeping the net");
@@ -25,6 +28,7 @@ export async function keepGrown(): Promise<void> {
 
 /** Goes back to the design; what evolved live can be brought back. */
 export async function discardGrown(): Promise<void> {
+  if (!isGrown()) return;
   const reply = await ask({ type: "live_evolve", what: "discard", parameters: {} }, "Discarding");
   if (!reply) return;
   toast.message("What grew is discarded; your design is as it was", {
@@ -32,6 +36,10 @@ export async function discardGrown(): Promise<void> {
     duration: 12_000,
     action: { label: "Undo this", onClick: restoreGrown },
   });
+}
+
+function isGrown(): boolean {
+  return (store.getState().live?.status ?? "none") !== "none";
 }
 
 /** Brings back what was discarded last. */
