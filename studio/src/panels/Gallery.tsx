@@ -94,7 +94,7 @@ function useColumns(box: RefObject<HTMLDivElement | null>): number {
   return Math.max(1, Math.floor((width - MARGIN) / WIDTH));
 }
 
-const PLAIN = "Force differential";
+const PLAIN = "Differential";
 
 /** The measure that is written under each individual: what it is sorted by, unless that is there anyway. */
 function measureUnder(sort: Sort): string {
