@@ -50,8 +50,10 @@ async function pictured(page: Page): Promise<{ springs: number; differential: nu
     .locator(".gallery .gallery-cell")
     .evaluateAll((cells) => cells.map((cell) => cell.getAttribute("aria-label")!));
   return labels.map((label) => {
-    const [, springs, differential] = label.match(/: (\d+) springs, force differential ([\d.]+)/)!;
-    return { springs: Number(springs), differential: Number(differential) };
+    const [, springs, differential] = label.match(
+      /: ([\d,]+) springs, force differential ([\d.]+)/,
+    )!;
+    return { springs: Number(springs.replace(",", "")), differential: Number(differential) };
   });
 }
 

@@ -136,7 +136,7 @@ test("a run that stands leads to its individuals, and what it cost is said", asy
     "true",
   );
   await page.getByRole("button", { name: "Look at individuals" }).click();
-  await expect(page.locator(".gallery header")).toContainText("under each: differential · springs");
+  await expect(page.locator(".gallery header")).toContainText("below: differential · springs");
   const bottom = async (what: string) => {
     const { y, height } = (await page.locator(what).boundingBox())!;
     return y + height;

@@ -111,7 +111,7 @@ function Header({ words }: { words: string }) {
     <header>
       <h2>Individuals</h2>
       <span>{words}</span>
-      <span className="gallery-reading">under each: {read}</span>
+      <span className="gallery-reading">below: {read}</span>
       <div className="gap" />
       {marked.length > 0 && (
         <button
