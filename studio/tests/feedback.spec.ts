@@ -7,8 +7,16 @@ test("figures and the force of the hand follow a pull, and say so", async ({ pag
   const largest = figures.locator(".fact", { hasText: "Largest force" }).locator(".fact-value");
   const resting = await largest.textContent();
   const anchor = await anchorPlace(page, "A9");
+  const below = page.getByRole("heading", { name: "Springs", exact: true });
+  const { y: still } = (await below.boundingBox())!;
   await page.mouse.move(anchor.x, anchor.y);
   await page.mouse.down();
+  // What changes less than is shown has not changed; nothing in the panel moves.
+  await page.mouse.move(anchor.x - 5, anchor.y, { steps: 3 });
+  await expect(figures.locator(".fact-change").first()).toBeVisible();
+  for (const change of await figures.locator(".fact-change").allTextContents())
+    expect(change).not.toContain("e");
+  expect((await below.boundingBox())!.y).toBe(still);
   await page.mouse.move(anchor.x - 40, anchor.y - 80, { steps: 6 });
   await expect(figures).toContainText("while pulled, against at rest");
   await expect(largest).not.toHaveText(resting!);
@@ -108,9 +116,10 @@ test("a type is tried before it is given, and the card lies off the pointer", as
   await nextPicture(page);
   const box = (await page.locator(".hover-card").boundingBox())!;
   expect(box.x > cell.x + 40 || box.y > cell.y + 40 || box.y + box.height < cell.y - 40).toBe(true);
+  await expect(page.locator(".hover-card")).toContainText("1 quad");
   await page.mouse.click(cell.x, cell.y);
-  await page.getByRole("button", { name: "dynamic", exact: true }).hover();
-  await expect(page.locator(".preview-card")).toContainText("type dynamic");
+  await page.getByRole("button", { name: "6 dynamic", exact: true }).hover();
+  await expect(page.locator(".preview-card")).toContainText("type 6 dynamic");
   await expect(page.locator(".preview-card")).toContainText("force differential");
   expect((await documentOf(page)).position).toBe(0);
 });
@@ -178,4 +187,30 @@ test("what is told hides nothing, can be put away, and goes with what it is abou
   await refuse();
   await visit("one-cylinder");
   await expect(toasts).toHaveCount(0, { timeout: 1000 });
+});
+
+test("nothing is offered that would be refused while the net evolves", async ({ page, visit }) => {
+  await visit("one-cylinder");
+  const undo = page.getByRole("button", { name: "Undo", exact: true });
+  const cut = page.getByRole("button", { name: "Cut springs" });
+  const help = page.locator(".tool-help");
+  await page.keyboard.press("g");
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  for (const button of [undo, cut])
+    await expect(button).not.toHaveAttribute("aria-disabled", "true");
+  await cut.click();
+  await expect(help).toContainText("Click a spring to cut it.");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Evolve live" }).click();
+  await page.locator(".looking.live").waitFor();
+  await expect(help).toContainText("Not now: the net evolves");
+  for (const button of [undo, cut]) await expect(button).toHaveAttribute("aria-disabled", "true");
+  const { x, y, width, height } = (await page.locator("main.viewport").boundingBox())!;
+  await page.mouse.click(x + width / 2, y + height / 2);
+  await expect(page.locator("[data-sonner-toast]")).toContainText("the net evolves");
+  await page.keyboard.press("v");
+  await expect(help).toContainText("Drag an anchor to move it while the net evolves");
+  await page.locator(".looking.live").getByRole("button", { name: "Discard" }).click();
+  await expect(undo).not.toHaveAttribute("aria-disabled", "true");
+  await expect(help).toContainText("Drag a node to pull the net, an anchor to move it");
 });

@@ -127,9 +127,9 @@ test("a tutor brushes, groups and takes a representative over", async ({ page, o
   await expect(page.locator(".gallery header")).toContainText(`${brushed} in`);
   for (const cell of await page.locator(".gallery .gallery-cell").all()) {
     const [, springs, differential] = (await cell.getAttribute("aria-label"))!.match(
-      /: (\d+) springs, force differential ([\d.]+)/,
+      /: ([\d,]+) springs, force differential ([\d.]+)/,
     )!;
-    expect(Number(springs)).toBeGreaterThanOrEqual(1000);
+    expect(Number(springs.replace(",", ""))).toBeGreaterThanOrEqual(1000);
     expect(Number(differential)).toBeLessThanOrEqual(20);
   }
   const row = page.locator(".gallery-row").first().locator("small b");

@@ -121,3 +121,62 @@ test("a double press does not press what has come in the place of a button", asy
   await expect(page.getByRole("list", { name: "Runs of this document" })).toHaveCount(0);
   await page.getByRole("button", { name: "Stop", exact: true }).click();
 });
+
+test("a run that stands leads to its individuals, and what it cost is said", async ({
+  page,
+  visit,
+}) => {
+  await visit("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await run(page, 3);
+  // What is looked at is not edited.
+  await expect(page.locator(".tool-help")).toContainText("once you take it over");
+  await expect(page.getByRole("button", { name: "Subdivide with a brush" })).toHaveAttribute(
+    "aria-disabled",
+    "true",
+  );
+  await page.getByRole("button", { name: "Look at individuals" }).click();
+  await expect(page.locator(".gallery header")).toContainText("below: differential · springs");
+  const bottom = async (what: string) => {
+    const { y, height } = (await page.locator(what).boundingBox())!;
+    return y + height;
+  };
+  expect(await bottom(".show-buttons")).toBeLessThan(await bottom("main.viewport"));
+
+  const most = page.locator(".gallery-cell").first();
+  await most.click();
+  await expect(page.locator(".looking")).toContainText("individual");
+  // Anchors have their names on both sides, and none is under a button.
+  await page.keyboard.press("Shift+p");
+  const names = page.locator(".anchor-names span", { hasText: /^A9$/ });
+  await expect(names).toHaveCount(2);
+  const buttons = (await page.locator(".view-buttons").boundingBox())!;
+  for (const name of await names.all()) {
+    const { x, y, width, height } = (await name.boundingBox())!;
+    const beside = x + width < buttons.x || y + height < buttons.y;
+    expect(beside).toBe(true);
+  }
+  await expect(page.getByRole("row", { name: /^Type 1 quad / })).toBeVisible();
+  await page.keyboard.press("Escape");
+
+  await page.getByRole("button", { name: "Take over as my design" }).click();
+  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await converged(page);
+  await page.getByRole("tab", { name: "Net" }).click();
+  const figures = page.locator(".panel-net .fact");
+  const differential = figures.filter({ hasText: "Force differential" }).locator(".fact-change");
+  await expect(differential).toHaveText(/^\+/);
+  await expect(differential).not.toHaveClass(/bad/);
+  await expect(figures.filter({ hasText: "Spring utilization factor" })).toBeVisible();
+
+  await page.getByRole("tab", { name: "History" }).click();
+  await page.getByRole("img", { name: "branched from runs/0001" }).hover();
+  await expect(page.getByRole("tooltip")).toContainText("Bred in runs/0001");
+
+  await page.setViewportSize({ width: 900, height: 600 });
+  const title = (await page.locator(".title").boundingBox())!;
+  const undo = (await page.getByRole("button", { name: "Undo", exact: true }).boundingBox())!;
+  const find = (await page.getByRole("button", { name: "Find a command" }).boundingBox())!;
+  expect(title.x + title.width).toBeLessThanOrEqual(undo.x);
+  expect(find.height).toBeLessThan(32);
+});

@@ -128,7 +128,7 @@ test("an architect relieves an anchor cell by cell", async ({ page, open }) => {
   await expect(
     page.locator(".fact", { hasText: "Force differential" }).locator(".fact-change"),
   ).toBeVisible();
-  await page.getByRole("button", { name: "dynamic", exact: true }).click();
+  await page.getByRole("button", { name: "6 dynamic", exact: true }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(3);
   const typed = await documentOf(page);
   expect(typed.figures.springs).not.toBe(divided.figures.springs);

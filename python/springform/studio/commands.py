@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from .. import design_file
 from ..arrays import Floats
 from ..design import Design
+from ..design_schema import BUILT_IN_CELL_TYPES
 from ..errors import DesignError, InputError
 from ..evolution import seek
 from .changes import Action, Place, ValueChange, values_of
@@ -181,8 +182,13 @@ def _retype(design: Design, cells: list[str], kind: str | None) -> Action:
         if content != kind:
             edits.append(f"{cell} retype {content} {kind}")
     if not edits:
-        raise InputError(f"the cells are of type {kind} already")
-    return _forest(f"{_counted('Give', cells)} type {kind}", edits)
+        raise InputError(f"the cells are of type {_type_name(kind)} already")
+    return _forest(f"{_counted('Give', cells)} type {_type_name(kind)}", edits)
+
+
+def _type_name(kind: str) -> str:
+    """Return a cell type by number and name; types of one's own have only their name."""
+    return f"{kind} {BUILT_IN_CELL_TYPES[int(kind)]}" if kind.isdecimal() else kind
 
 
 def _turn(design: Design, cells: list[str]) -> Action:

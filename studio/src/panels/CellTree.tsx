@@ -176,7 +176,7 @@ export function CellTree() {
               <span>{title}</span>
               <span className="tree-kind">
                 {branch.cell >= 0
-                  ? typeName(plainType(net.types[branch.cell]))
+                  ? `type ${typeName(plainType(net.types[branch.cell]))}`
                   : inFull(leaves.length)}
                 {branch.cell >= 0 && net.stored[branch.cell] === 1 && " · off"}
               </span>

@@ -94,7 +94,7 @@ function useColumns(box: RefObject<HTMLDivElement | null>): number {
   return Math.max(1, Math.floor((width - MARGIN) / WIDTH));
 }
 
-const PLAIN = "Force differential";
+const PLAIN = "Differential";
 
 /** The measure that is written under each individual: what it is sorted by, unless that is there anyway. */
 function measureUnder(sort: Sort): string {
@@ -111,7 +111,7 @@ function Header({ words }: { words: string }) {
     <header>
       <h2>Individuals</h2>
       <span>{words}</span>
-      <span className="gallery-reading">under each: {read}</span>
+      <span className="gallery-reading">below: {read}</span>
       <div className="gap" />
       {marked.length > 0 && (
         <button

@@ -6,16 +6,7 @@ import { plainType } from "../document/quantities";
 import { inFull } from "../document/scale";
 import { NOTHING, selectedRows, springKey } from "../document/selection";
 import { startRun } from "../document/starting";
-import {
-  ask,
-  changeView,
-  openPanel,
-  type PanelId,
-  type State,
-  select,
-  store,
-  type ToolId,
-} from "../document/store";
+import { ask, openPanel, type State, select, store, type ToolId } from "../document/store";
 import { inTurn } from "../document/turns";
 import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
@@ -24,7 +15,7 @@ import { discardGrown, keepGrown, restoreGrown } from "./confirming";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
-import { toggleSection } from "./SectionControl";
+import { VIEW_COMMANDS } from "./viewCommands";
 
 export const GROUPS = [
   "Net",
@@ -150,16 +141,6 @@ export function selectExtreme(most: boolean): () => void {
     select({ kind: "springs", keys: [springKey(net, best)] });
   };
 }
-
-/** Panels by what a person may look for. */
-const PANELS: { id: PanelId; label: string }[] = [
-  { id: "net", label: "Net: open its panel" },
-  { id: "cells", label: "Cells: open their panel" },
-  { id: "framework", label: "Framework: open its panel" },
-  { id: "evolve", label: "Evolve: open its panel" },
-  { id: "graft", label: "Graft: open its panel, with patches" },
-  { id: "history", label: "History: open its panel" },
-];
 
 const tool = (id: ToolId) => () => store.setState({ tool: id });
 
@@ -438,111 +419,7 @@ export const COMMANDS: Command[] = [
     acts: true,
     run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
   },
-  ...PANELS.map(({ id, label }) => ({
-    id: `panel-${id}`,
-    label,
-    group: "View" as const,
-    refused: () => (isComparing() ? "close the comparison first" : null),
-    run: () => openPanel(id),
-  })),
-  {
-    id: "fit",
-    label: "Fit the net",
-    group: "View",
-    keys: "F",
-    run: ({ viewport }) => viewport?.fit(),
-  },
-  {
-    id: "view-perspective",
-    label: "View from the corner",
-    group: "View",
-    keys: "0",
-    run: ({ viewport }) => viewport?.fit("perspective"),
-  },
-  {
-    id: "view-front",
-    label: "View from the front",
-    group: "View",
-    keys: "1",
-    run: ({ viewport }) => viewport?.fit("front"),
-  },
-  {
-    id: "view-right",
-    label: "View from the right",
-    group: "View",
-    keys: "3",
-    run: ({ viewport }) => viewport?.fit("right"),
-  },
-  {
-    id: "view-top",
-    label: "View from the top",
-    group: "View",
-    keys: "7",
-    run: ({ viewport }) => viewport?.fit("top"),
-  },
-  {
-    id: "view-back",
-    label: "View from the back",
-    group: "View",
-    keys: "Ctrl+1",
-    run: ({ viewport }) => viewport?.fit("back"),
-  },
-  {
-    id: "view-left",
-    label: "View from the left",
-    group: "View",
-    keys: "Ctrl+3",
-    run: ({ viewport }) => viewport?.fit("left"),
-  },
-  {
-    id: "view-bottom",
-    label: "View from below",
-    group: "View",
-    keys: "Ctrl+7",
-    run: ({ viewport }) => viewport?.fit("bottom"),
-  },
-  {
-    id: "section",
-    label: "Section through the net",
-    group: "View",
-    keys: "K",
-    run: toggleSection,
-  },
-  {
-    id: "cells",
-    label: "Show cells as a skin",
-    group: "View",
-    keys: "C",
-    run: () => changeView({ cells: !store.getState().view.cells }),
-  },
-  {
-    id: "nodes",
-    label: "Show nodes",
-    group: "View",
-    keys: "N",
-    run: () => changeView({ nodes: !store.getState().view.nodes }),
-  },
-  {
-    id: "reactions",
-    label: "Show reactions",
-    group: "View",
-    keys: "T",
-    run: () => changeView({ reactions: !store.getState().view.reactions }),
-  },
-  {
-    id: "thickness",
-    label: "Draw springs as thick as what they are coloured by",
-    group: "View",
-    keys: "W",
-    run: () => changeView({ thickness: !store.getState().view.thickness }),
-  },
-  {
-    id: "theme",
-    label: "Dark or light",
-    group: "View",
-    keys: "D",
-    run: () => store.setState(({ theme }) => ({ theme: theme === "dark" ? "light" : "dark" })),
-  },
+  ...VIEW_COMMANDS,
   {
     id: "undo",
     label: "Undo",

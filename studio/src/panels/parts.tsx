@@ -167,11 +167,8 @@ export function Fact({
 }) {
   const known = typeof value === "number" && typeof before === "number";
   const rise = known ? value - before : 0;
-  const change = !known
-    ? null
-    : count
-      ? rise && `${rise > 0 ? "+" : "−"}${inFull(Math.abs(rise))}`
-      : changeInDigits(value, before, digits);
+  const counted = rise === 0 ? null : `${rise > 0 ? "+" : "−"}${inFull(Math.abs(rise))}`;
+  const change = !known ? null : count ? counted : changeInDigits(value, before, digits);
   const good = better && (better === "less" ? rise < 0 : rise > 0);
   const tone = !better ? "" : good ? "good" : "bad";
   const shown = typeof value === "string" ? value : count ? inFull(value) : inDigits(value, digits);

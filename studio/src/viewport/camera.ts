@@ -23,6 +23,7 @@ export class Eye {
   readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
   readonly controls: OrbitControls;
   private sphere = new THREE.Sphere(new THREE.Vector3(), 1);
+  private free = 1;
   private glide: {
     from: [THREE.Vector3, THREE.Vector3];
     to: [THREE.Vector3, THREE.Vector3];
@@ -91,7 +92,7 @@ export class Eye {
       ? new THREE.Vector3(...DIRECTIONS[view])
       : this.camera.position.clone().sub(this.controls.target);
     const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
-    const narrow = Math.min(1, this.camera.aspect);
+    const narrow = Math.min(this.free, this.camera.aspect);
     const distance = (MARGIN * this.sphere.radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
     const position = target.clone().addScaledVector(direction.normalize(), distance);
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -120,7 +121,9 @@ export class Eye {
     return !box.isEmpty() && box.getSize(new THREE.Vector2()).length() > DOT;
   }
 
-  resize(width: number, height: number): void {
+  /** Takes the size of the picture [px]; of its height only so much is free of what lies over it. */
+  resize(width: number, height: number, free = height): void {
+    this.free = free / height;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
   }

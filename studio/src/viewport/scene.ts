@@ -48,6 +48,9 @@ const ARROW_SHARE = 0.28;
 // Colours are given as they are shown; nothing here is lit.
 THREE.ColorManagement.enabled = false;
 
+/** Height of what names two nets that are compared, and of their scale [px]. */
+const HEADING = 96;
+
 /** Draws what the store holds; made once for a canvas. */
 export class Viewport {
   readonly eye: Eye;
@@ -315,7 +318,8 @@ export class Viewport {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(this.width, this.height, false);
     const both = isComparing();
-    this.eye.resize(both ? this.width / 2 : this.width, this.height);
+    if (both) this.eye.resize(this.width / 2, this.height, Math.max(this.height - HEADING, 1));
+    else this.eye.resize(this.width, this.height);
     this.eye.controls.zoomToCursor = !both;
     if (this.paired) this.eye.fit(null, false);
     this.redraw(true);
