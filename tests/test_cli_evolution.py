@@ -138,7 +138,9 @@ OPTIONS: list[tuple[str, ...]] = [
 
 def test_every_option_has_an_effect() -> None:
     base = ("--population", "12", "--generations", "8", "--switches", "2", "--toggles", "2")
-    digests = {evolved(*base, *words, out="-".join(words)).digest() for words in [(), *OPTIONS]}
+    digests = {
+        evolved(*base, *words, out="-".join(("run", *words))).digest() for words in [(), *OPTIONS]
+    }
     assert len(digests) == len(OPTIONS) + 1
 
 

@@ -29,7 +29,7 @@ async function toast(page: Page, words: string | RegExp): Promise<void> {
 test("the anchor that is worth copying is found", async ({ page, visit, home }) => {
   await visit("three-cylinders");
   // Two cells divided leave no symmetry, so that one anchor alone is the best.
-  for (const [done, name] of ["A4", "A9"].entries()) {
+  for (const [done, name] of ["A4", "A1"].entries()) {
     await clickCellAbove(page, await anchorPlace(page, name));
     await page.keyboard.press("s");
     await expect.poll(async () => (await documentOf(page)).position).toBe(done + 1);
@@ -46,7 +46,6 @@ test("the anchor that is worth copying is found", async ({ page, visit, home }) 
   await page.getByRole("tab", { name: "Graft", exact: true }).click();
   await page.getByRole("button", { name: "Rings round the best anchor" }).click();
   await expect(page.getByLabel("Seen from")).toHaveValue(`anchor ${patch.anchor}`);
-  await expect(page.locator(".panel-graft")).toContainText(`${patch.cells} cells selected`);
 });
 
 test("a patch is turned over, renamed and deleted", async ({ page, visit }) => {
