@@ -183,13 +183,13 @@ test("editing", async ({ page, open }) => {
   await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("axial_stiffness");
   await page.getByRole("button", { name: "Apply to the selected spring" }).scrollIntoViewIfNeeded();
   await take(page, "law");
-  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("part trunk");
   await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("curve");
   await page.getByRole("button", { name: "Apply to trunk" }).click();
   await page.getByRole("button", { name: "Take back: trunk" }).waitFor();
   await converged(page);
   await page.getByLabel("Colour springs by").selectOption("strain");
-  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("part trunk");
   await page.getByRole("button", { name: "Apply to trunk" }).scrollIntoViewIfNeeded();
   await take(page, "curve");
 });
