@@ -1,5 +1,14 @@
 // What the window tells while one works: figures of what is seen, forces of the hand, brushes, selections that stay.
-import { anchorPlace, cellAbove, converged, documentOf, expect, nextPicture, test } from "./studio";
+import {
+  anchorPlace,
+  cellAbove,
+  clickCellAbove,
+  converged,
+  documentOf,
+  expect,
+  nextPicture,
+  test,
+} from "./studio";
 
 test("figures and the force of the hand follow a pull, and say so", async ({ page, visit }) => {
   await visit("three-cylinders");
@@ -213,4 +222,35 @@ test("nothing is offered that would be refused while the net evolves", async ({ 
   await page.locator(".looking.live").getByRole("button", { name: "Discard" }).click();
   await expect(undo).not.toHaveAttribute("aria-disabled", "true");
   await expect(help).toContainText("Drag a node to pull the net, an anchor to move it");
+});
+
+test("a coordinate that is refused is said by its name, and the field goes back", async ({
+  page,
+  visit,
+}) => {
+  await visit("one-cylinder");
+  const anchor = await anchorPlace(page, "A2");
+  await page.mouse.click(anchor.x, anchor.y);
+  const field = page.getByRole("textbox", { name: /^x/ });
+  const before = await field.inputValue();
+  await field.fill("1e9");
+  await field.press("Enter");
+  await expect(page.locator("[data-sonner-toast]")).toContainText(
+    "x: must be less than or equal to 1000000",
+  );
+  await expect(field).toHaveValue(before);
+  await expect(page.locator(".busy")).toBeEmpty();
+  expect((await documentOf(page)).position).toBe(0);
+});
+
+test("marks that were cleared can be brought back", async ({ page, visit }) => {
+  await visit("three-cylinders");
+  await page.getByRole("tab", { name: "Evolve" }).click();
+  await page.getByRole("button", { name: "Keep out", exact: true }).click();
+  await clickCellAbove(page, await anchorPlace(page, "A4"));
+  await expect(page.locator(".brushes")).toContainText("1 brushed");
+  await page.getByRole("button", { name: "Clear marks" }).click();
+  await expect(page.locator(".brushes")).not.toContainText("brushed");
+  await page.getByRole("button", { name: "Undo this" }).click();
+  await expect(page.locator(".brushes")).toContainText("1 brushed");
 });

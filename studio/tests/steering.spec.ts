@@ -36,7 +36,13 @@ test("live evolution obeys its parameters, and a discarded net comes back", asyn
   await page.getByRole("button", { name: "Undo this" }).click();
   await expect(page.locator(".looking.live")).toContainText("Evolving live");
   await page.getByRole("button", { name: "Stop and keep" }).click();
-  await expect.poll(async () => (await documentOf(page)).position).toBe(1);
+  await expect(page.locator(".looking.live")).toHaveCount(0);
+  // What did not change is no action.
+  const better = differential < before.figures.force_differential! * 0.999;
+  expect((await documentOf(page)).position).toBe(Number(better));
+  await expect(page.locator("[data-sonner-toast]").last()).toContainText(
+    better ? "Your design is now what grew" : "Nothing better grew",
+  );
 });
 
 test("an ended run stays ended over a restart, and earlier runs can be shown again", async ({

@@ -1,8 +1,13 @@
 // What the colours mean, and the choice of what they show.
 import { SlidersHorizontal } from "lucide-react";
 import { Popover } from "radix-ui";
-import { useMemo } from "react";
-import { colouringOf, type KindLegend, type ScaleLegend } from "../document/colouring";
+import { useMemo, useRef } from "react";
+import {
+  type Colouring,
+  colouringOf,
+  type KindLegend,
+  type ScaleLegend,
+} from "../document/colouring";
 import { type Condition, type Conditions, PIECES } from "../document/conditions";
 import { formulaOf, shared } from "../document/laws";
 import {
@@ -44,8 +49,11 @@ export function Legend() {
         : null,
     [net, motion, colour, theme],
   );
-  if (!net || !colouring) return null;
-  const { legend, conditions } = colouring;
+  // While nets follow one another, as in live evolution, that of the last one stays.
+  const last = useRef<Colouring | null>(null);
+  last.current = colouring ?? last.current;
+  if (!net || !last.current) return null;
+  const { legend, conditions } = last.current;
   const quantity = quantityOf(colour.by);
   return (
     <section className="floating legend" aria-label="Legend">

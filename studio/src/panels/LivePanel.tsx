@@ -14,7 +14,7 @@ import { ask, askQuietly, store } from "../document/store";
 import { GROW, springsIn } from "../document/weights";
 import type { Refused } from "../protocol/connection";
 import type { GenerationRow, LiveState } from "../protocol/messages";
-import { discardGrown, keepGrown } from "./confirming";
+import { clearMarks, discardGrown, keepGrown } from "./confirming";
 import { ParameterFields } from "./ParameterFields";
 import { Fact, Section } from "./parts";
 import { RunGraph } from "./RunGraph";
@@ -213,11 +213,7 @@ function Brushes() {
         <p className="explain">
           {inFull(count)} brushed; what descends from them inherits it, in runs too. Marks stay with
           the document until they are cleared.{" "}
-          <button
-            type="button"
-            className="link"
-            onClick={() => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks")}
-          >
+          <button type="button" className="link" onClick={clearMarks}>
             Clear marks
           </button>
         </p>

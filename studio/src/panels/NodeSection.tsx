@@ -131,9 +131,9 @@ function Reaction({ name }: { name: string }) {
   );
 }
 
-function move(anchor: Anchor, axis: number, value: number): void {
+function move(anchor: Anchor, axis: number, value: number): Promise<unknown> {
   const position = anchor.position.map((old, place) => (place === axis ? value : old));
-  ask({ type: "move_anchor", anchor: anchor.name, position }, "Moving the anchor");
+  return ask({ type: "move_anchor", anchor: anchor.name, position }, "Moving the anchor");
 }
 
 function wayOf({ holds, line, plane }: Anchor): Way {

@@ -1,6 +1,7 @@
 // The run of the document: its course, what it is started with, and the runs before it.
 import { Images, Pause, Play, Square } from "lucide-react";
 import { type MouseEvent, useRef } from "react";
+import { toast } from "sonner";
 import { useStore } from "zustand";
 import { useShallow } from "zustand/react/shallow";
 import type { Run } from "../document/run";
@@ -69,7 +70,7 @@ function Runs({ run }: { run: Run }) {
                   ? "It is shown"
                   : `Show it again${status === "running" ? "; the run that goes on ends, and can be continued later" : ""}`
               }
-              onClick={() => ask({ type: "open_run", number: one.number }, "Opening the run")}
+              onClick={() => openRun(one.number)}
             >
               <b>{one.number ? `Run ${one.number}` : "Run elsewhere"}</b>
               <span>
@@ -83,6 +84,16 @@ function Runs({ run }: { run: Run }) {
       </ul>
     </>
   );
+}
+
+/** Shows another run; one that goes on stands still meanwhile, which is told. */
+async function openRun(number: number): Promise<void> {
+  const { run } = store.getState();
+  const opened = await ask({ type: "open_run", number }, "Opening the run");
+  if (opened && run?.state.status === "running")
+    toast.message("The run that went on stands still; show it again to continue it", {
+      id: "done",
+    });
 }
 
 /** Why the differential goes where it goes. */

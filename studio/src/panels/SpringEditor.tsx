@@ -1,6 +1,7 @@
 // What springs are made of: law, unstressed length, sense and section of some of them, said in one action.
 import { X } from "lucide-react";
 import { type FormEvent, useState } from "react";
+import { notEditable } from "../document/editable";
 import { LAWS, type LawKey, SENSES, shared } from "../document/laws";
 import { groupOf, type Net } from "../document/net";
 import { lengthsOf } from "../document/quantities";
@@ -128,6 +129,7 @@ type RestKey = keyof typeof RESTS;
 function LawForm({ scope }: { scope: Scope }) {
   const { net, motion } = store.getState() as { net: Net; motion: NonNullable<State["motion"]> };
   const { rows } = scope;
+  const refused = useStudio(notEditable);
   const number = shared(rows, (row) => net.law[row]);
   const known = number === null ? null : LAWS[number];
   const rest = shared(rows, (row) => net.restLength[row]);
@@ -264,7 +266,12 @@ function LawForm({ scope }: { scope: Scope }) {
         onText={setDiameter}
       />
       <div className="row end">
-        <button type="submit" className="button primary">
+        <button
+          type="submit"
+          className="button primary"
+          disabled={refused !== null}
+          title={refused ?? undefined}
+        >
           Apply to {scope.name}
         </button>
       </div>

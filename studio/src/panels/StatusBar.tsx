@@ -1,6 +1,7 @@
 // The bar at the bottom: form-finding and whether it has converged, and what the engine is busy with.
 import { Pause, Play, RotateCcw, StepForward } from "lucide-react";
 import { inDigits, inFull } from "../document/scale";
+import { useIsComparing } from "./Compare";
 import { move } from "./commands";
 import { Busy, IconButton } from "./parts";
 import { useStudio } from "./use";
@@ -86,7 +87,9 @@ function Counts() {
   const figures = useStudio((state) => state.document?.figures);
   const net = useStudio((state) => state.net);
   const live = useStudio((state) => (state.live?.status ?? "none") !== "none");
-  if (!figures) return null;
+  const comparing = useIsComparing();
+  // The figures of both nets that are compared stand beside them.
+  if (!figures || comparing) return null;
   return (
     <span className="status-fact">
       <b>{inFull(live && net ? net.ends.length / 2 : figures.springs)}</b> springs ·{" "}

@@ -1,15 +1,81 @@
 // Commands of choosing among individuals: pins, comparisons, and the sort key that all pictures share.
 import { MEASURES } from "../document/choosing";
 import { compare, isComparing, likelySides, stopComparing, swapSides } from "../document/comparing";
-import { shownSide, togglePin } from "../document/pins";
-import { type State, store } from "../document/store";
+import { lookAt, shownSide, togglePin } from "../document/pins";
+import { ask, type State, store } from "../document/store";
 import type { Command } from "./commands";
+import { takeOver } from "./confirming";
 import { sortBy, turnSort } from "./Sorting";
 
 const needsRun = ({ run }: State) =>
   run && run.state.status !== "none" ? null : "there is no run";
 
+const needsLook = ({ document }: State) =>
+  document?.looking ? null : "your design is what is shown";
+
+/** Asks whoever drives the run. */
+function steer(what: "pause" | "continue" | "stop"): () => void {
+  return () => void ask({ type: "steer_run", what, parameters: {} }, "Steering the run");
+}
+
+function whileRun(...statuses: string[]): (state: State) => string | null {
+  return ({ run }) => {
+    const status = run?.state.status ?? "none";
+    return statuses.includes(status)
+      ? null
+      : status === "none"
+        ? "there is no run"
+        : `the run is ${status}`;
+  };
+}
+
 export const CHOOSING_COMMANDS: Command[] = [
+  {
+    id: "run-pause",
+    label: "Pause the run",
+    group: "Choosing",
+    refused: whileRun("running"),
+    run: steer("pause"),
+  },
+  {
+    id: "run-continue",
+    label: "Continue the run",
+    group: "Choosing",
+    refused: whileRun("paused"),
+    run: steer("continue"),
+  },
+  {
+    id: "run-stop",
+    label: "Stop the run",
+    group: "Choosing",
+    refused: whileRun("running", "paused"),
+    run: steer("stop"),
+  },
+  {
+    id: "run-follow",
+    label: "Follow the run in the view, or no longer",
+    group: "Choosing",
+    refused: needsRun,
+    run: () => {
+      const on = !store.getState().run?.state.following;
+      ask({ type: "follow", on }, "Following the run");
+    },
+  },
+  {
+    id: "take-over",
+    label: "Take over what is shown as my design",
+    words: "reinstate",
+    group: "Choosing",
+    refused: needsLook,
+    run: () => void takeOver(),
+  },
+  {
+    id: "back-to-design",
+    label: "Back to my design",
+    group: "Choosing",
+    refused: needsLook,
+    run: () => lookAt("design"),
+  },
   {
     id: "compare-close",
     label: "Close the comparison",

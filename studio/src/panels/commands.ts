@@ -11,7 +11,7 @@ import { inTurn } from "../document/turns";
 import { resizeBrush } from "../tools/brush";
 import type { Viewport } from "../viewport/scene";
 import { CHOOSING_COMMANDS } from "./choosingCommands";
-import { discardGrown, keepGrown, restoreGrown } from "./confirming";
+import { clearMarks, discardGrown, keepGrown, restoreGrown } from "./confirming";
 import { exportDrawing, exportModel, exportPicture, MODELS } from "./exporting";
 import { GRAFT_COMMANDS } from "./graftCommands";
 import { support } from "./NodeSection";
@@ -34,6 +34,8 @@ export type Group = (typeof GROUPS)[number];
 export interface Command {
   id: string;
   label: string;
+  /** Other words that people look for it by. */
+  words?: string;
   group: Group;
   /** Keys as `KeyboardEvent.key` names them, `Ctrl+` and `Shift+` before them. */
   keys?: string;
@@ -66,7 +68,6 @@ const needsOneNode = (state: State) =>
 const needsSpring = (state: State) => notEditable(state) ?? oneSpring(state);
 
 const needsLive = (state: State) => (isEvolving(state) ? null : "nothing evolves live");
-const whileEvolving = (state: State) => (isEvolving(state) ? notEditable(state) : null);
 
 function cells(): string[] {
   const { selection } = store.getState();
@@ -417,7 +418,7 @@ export const COMMANDS: Command[] = [
     refused: ({ live }) =>
       Object.keys(live?.weights ?? {}).length ? null : "no cells are brushed",
     acts: true,
-    run: () => ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks"),
+    run: clearMarks,
   },
   ...VIEW_COMMANDS,
   {
@@ -426,7 +427,7 @@ export const COMMANDS: Command[] = [
     group: "Document",
     keys: "Ctrl+Z",
     refused: (state) =>
-      whileEvolving(state) ?? (state.document?.position ? null : "nothing was done"),
+      notEditable(state) ?? (state.document?.position ? null : "nothing was done"),
     acts: true,
     run: () => undo(false),
   },
@@ -436,7 +437,7 @@ export const COMMANDS: Command[] = [
     group: "Document",
     keys: "Ctrl+Shift+Z",
     refused: (state) =>
-      whileEvolving(state) ??
+      notEditable(state) ??
       (state.document && state.document.position < state.document.length
         ? null
         : "nothing was undone"),
@@ -464,6 +465,7 @@ export const COMMANDS: Command[] = [
   {
     id: "picture",
     label: "Export a picture (PNG)",
+    words: "screenshot image render",
     group: "Document",
     run: ({ viewport }) => viewport && exportPicture(viewport),
   },
@@ -474,9 +476,10 @@ export const COMMANDS: Command[] = [
     refused: () => (isComparing() ? "close the comparison first" : null),
     run: ({ viewport }) => viewport && exportDrawing(viewport),
   },
-  ...MODELS.map(({ name, label }) => ({
+  ...MODELS.map(({ name, label, words }) => ({
     id: `export-${name}`,
     label: `Export: ${label}`,
+    words,
     group: "Document" as const,
     run: () => void exportModel(name),
   })),
@@ -497,6 +500,7 @@ export const COMMANDS: Command[] = [
   {
     id: "keys",
     label: "Show all keys",
+    words: "help shortcuts keyboard",
     group: "Document",
     keys: "?",
     run: ({ dialogs }) => dialogs.open("keys"),

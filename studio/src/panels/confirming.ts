@@ -47,6 +47,24 @@ export function restoreGrown(): void {
   ask({ type: "live_evolve", what: "restore", parameters: {} }, "Bringing it back");
 }
 
+/** Takes all marks of the brush away; they are no part of the design, so undo does not bring them back. */
+export async function clearMarks(): Promise<void> {
+  const marks = Object.entries(store.getState().live?.weights ?? {});
+  const cleared = await ask({ type: "weigh_cells", cells: [], factor: null }, "Clearing marks");
+  if (!cleared) return;
+  const bringBack = () => {
+    for (const factor of new Set(marks.map(([, one]) => one))) {
+      const cells = marks.filter(([, one]) => one === factor).map(([cell]) => cell);
+      ask({ type: "weigh_cells", cells, factor }, "Bringing the marks back");
+    }
+  };
+  toast.message("The marks are cleared", {
+    id: "done",
+    duration: 12_000,
+    action: { label: "Undo this", onClick: bringBack },
+  });
+}
+
 /** Tells that the design was replaced, with an Undo of just that. */
 function confirmAction(text: string): void {
   const { document } = store.getState();

@@ -9,12 +9,16 @@ import { waited } from "../protocol/waits";
 import type { Viewport } from "../viewport/scene";
 import type { Legend } from "../viewport/vector";
 
-/** Files of the model, by the name that the engine knows. */
+/** Files of the model, by the name that the engine knows, and other words that people look for them by. */
 export const MODELS = [
-  { name: "toml", label: "Design file (TOML)" },
-  { name: "json", label: "Design file (JSON)" },
-  { name: "obj", label: "Lines at equilibrium (OBJ)" },
-  { name: "tables", label: "Tables of nodes and springs (ZIP)" },
+  { name: "toml", label: "Design file (TOML)", words: "" },
+  { name: "json", label: "Design file (JSON)", words: "" },
+  {
+    name: "obj",
+    label: "Lines at equilibrium (OBJ)",
+    words: "rhino 3dm dxf cad mesh model curves",
+  },
+  { name: "tables", label: "Tables of nodes and springs (ZIP)", words: "csv excel" },
 ] as const;
 
 export async function exportPicture(viewport: Viewport): Promise<void> {

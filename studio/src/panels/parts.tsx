@@ -196,7 +196,8 @@ export function NumberField({
   label: string;
   value: number;
   unit?: string;
-  onTake(value: number): void;
+  /** Takes the number; what resolves to null was refused, and the field goes back to its value. */
+  onTake(value: number): unknown;
   least?: number;
   whole?: boolean;
 }) {
@@ -210,9 +211,9 @@ export function NumberField({
     Number.isFinite(number) &&
     (least === undefined || number >= least) &&
     (!whole || Number.isInteger(number));
-  const take = () => {
+  const take = async () => {
     if (!valid) setText(shown);
-    else if (number !== Number(shown)) onTake(number);
+    else if (number !== Number(shown) && (await onTake(number)) === null) setText(shown);
   };
   return (
     <label className="number-field">

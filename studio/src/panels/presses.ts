@@ -6,7 +6,9 @@ function meaningOf(target: EventTarget | null): string | null {
   const button = target instanceof Element ? target.closest("button") : null;
   if (!button) return null;
   const words = button.getAttribute("aria-label") ?? button.textContent ?? "";
-  return words.replace(/\(.*?\)|[\d.,]+/g, "").trim();
+  // What is pressed would be put away.
+  const pressed = button.getAttribute("aria-pressed") ?? "";
+  return words.replace(/\(.*?\)|[\d.,]+/g, "").trim() + pressed;
 }
 
 /** Ignores the second press of a double press where another button, or the same one with other words, has come. */
