@@ -13,7 +13,7 @@ test("the law of a cylinder is changed while the net moves, and taken back", asy
 }) => {
   await visit("three-cylinders");
   const before = await documentOf(page);
-  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("trunk");
+  await page.getByRole("combobox", { name: "Of", exact: true }).selectOption("part trunk");
   await page.getByRole("combobox", { name: "Law", exact: true }).selectOption("axial_stiffness");
   await expect(page.locator(".formula")).toContainText("EA refers to the unstressed length L0");
   await page.getByRole("textbox", { name: /^Axial stiffness EA/ }).fill("3");
@@ -237,7 +237,7 @@ test("types are given with a brush", async ({ page, visit }) => {
   await page.mouse.up();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
   const { history, figures } = await documentOf(page);
-  expect(history.at(-1)?.label).toMatch(/^Give .* type 2$/);
+  expect(history.at(-1)?.label).toMatch(/^Give .* type 2 braced$/);
   expect(figures.springs).not.toBe(before.figures.springs);
 });
 
