@@ -66,7 +66,9 @@ test("a researcher watches a run of the command line and changes its course", as
     );
     await page.getByRole("button", { name: "Pictures" }).click();
     const total = (made * 12).toLocaleString("en");
-    await expect(page.locator(".gallery header")).toContainText(`${total} in ${made} generations`);
+    await expect(page.locator(".gallery header")).toContainText(
+      `${total} in ${made.toLocaleString("en")} generations`,
+    );
   } finally {
     driver.kill("SIGKILL");
   }

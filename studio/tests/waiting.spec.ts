@@ -29,11 +29,21 @@ async function slowed(page: Page): Promise<(late: boolean) => void> {
 test("whatever is waited for is told, and only while it is", async ({ page, open, home }) => {
   const late = await slowed(page);
   const busy = page.locator(".busy").last();
-  const told = async (words: string | RegExp, act: () => Promise<unknown>) => {
+  // What comes after it may be told instead a moment later.
+  await page.addInitScript(() => {
+    const said: string[] = [];
+    Object.assign(window, { said });
+    new MutationObserver(() => {
+      for (const one of document.querySelectorAll(".busy")) said.push(one.textContent ?? "");
+    }).observe(document, { childList: true, characterData: true, subtree: true });
+  });
+  const said = () => page.evaluate(() => (window as unknown as { said: string[] }).said.join("\n"));
+  const told = async (words: string, act: () => Promise<unknown>) => {
     await expect(busy).toHaveText("");
+    await page.evaluate(() => (window as unknown as { said: string[] }).said.splice(0));
     late(true);
     await act();
-    await expect(busy).toContainText(words);
+    await expect.poll(said).toContain(words);
     late(false);
     await expect(busy).toHaveText("");
   };
