@@ -446,8 +446,7 @@ class Session:
             await self.runs.steer(request, self._in_thread)
             self._tell_runs()
             return
-        if self._live.live is not None:
-            raise InputError("the net evolves; keep or discard what it grew first")
+        self._check_nothing_evolves()
         values = {"cell_weights": self._live.weights} | request.parameters
         net = await self._in_thread(lambda: self.pins.net(request.side))
         await self.runs.start(net.design, values, self._in_thread)
@@ -481,16 +480,14 @@ class Session:
         if request.generation is None and request.pin is None:
             self._looking = None
         else:
-            if self._live.live is not None:
-                raise InputError("the net evolves; keep or discard what it grew first")
+            self._check_nothing_evolves()
             self._looking = await self._in_thread(lambda: self.pins.looking(request))
         self._take_design()
 
     async def _reinstate(self, request: Reinstate) -> None:
         if request.side == "design":
             raise InputError("this is your design; look at an individual first")
-        if self._live.live is not None:
-            raise InputError("the net evolves; keep or discard what it grew first")
+        self._check_nothing_evolves()
         net = await self._in_thread(lambda: self.pins.net(request.side))
         # Without a place it is a pin, which may have a name of somebody's own.
         label = f"Take over {net.label if net.place is None else net.place.label.lower()}"
@@ -500,9 +497,12 @@ class Session:
         )
         self._tell_runs()
 
-    def _check_design_is_shown(self) -> None:
+    def _check_nothing_evolves(self) -> None:
         if self._live.live is not None:
             raise InputError("the net evolves; keep or discard what it grew first")
+
+    def _check_design_is_shown(self) -> None:
+        self._check_nothing_evolves()
         if self._looking is not None:
             raise InputError("this is not your design; take it over, or go back to your design")
 

@@ -143,6 +143,19 @@ const ALL = {
 
 export type ParameterName = keyof typeof ALL;
 
+/** How mutants are made and chosen, in runs and in live evolution alike. */
+export const MAKING = [
+  "population",
+  "insertions",
+  "switches",
+  "toggles",
+  "types",
+  "weighting",
+  "fitness",
+  "selection",
+  "symmetry",
+] as const satisfies ParameterName[];
+
 /** Every parameter that people set, described once. */
 export const PARAMETERS: Record<ParameterName, Parameter> = ALL;
 

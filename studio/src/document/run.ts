@@ -10,6 +10,11 @@ export interface Run {
   rows: GenerationRow[];
 }
 
+/** Whether a run that stands can go on: it was paused or stopped, and has not reached its end. */
+export function mayContinue({ state: { status, reason } }: Run): boolean {
+  return status !== "running" && (status !== "ended" || reason === "it was stopped");
+}
+
 /** Springs and force differential of all individuals, in order of generation and number. */
 export interface Individuals {
   population: number;

@@ -1,20 +1,12 @@
 // What the next run is started with, as it is typed, and why the engine refused it.
 import { createStore } from "zustand/vanilla";
 import type { Asking, Refused } from "../protocol/connection";
-import { type ParameterName, type Texts, textOf, valueSaid } from "./parameters";
+import { MAKING, type ParameterName, type Texts, textOf, valueSaid } from "./parameters";
 import { askQuietly, forgetNotice, notify, type State, store } from "./store";
 
 /** What a person may set; the rest has the engine's defaults. */
 export const SET = [
-  "population",
-  "insertions",
-  "switches",
-  "toggles",
-  "types",
-  "weighting",
-  "fitness",
-  "selection",
-  "symmetry",
+  ...MAKING,
   "until_springs",
   "until_differential",
   "generations",

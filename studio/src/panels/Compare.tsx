@@ -101,7 +101,7 @@ function useSides(side: Side): Option<Side>[] {
 function explained(pins: PinState[], side: Side): string {
   const pin = pins.find(({ number }) => side === `pin/${number}`);
   if (pin)
-    return `${pin.figures.springs.toLocaleString("en")} springs, differential ${inDigits(pin.figures.force_differential)}`;
+    return `${inFull(pin.figures.springs)} springs, differential ${inDigits(pin.figures.force_differential)}`;
   return side === "design" ? "as it is now" : "of the run, as it was made";
 }
 

@@ -3,6 +3,7 @@ import { Check, Eraser, Pause, Play, Sprout, X } from "lucide-react";
 import type { ReactNode } from "react";
 import { useMemo, useState } from "react";
 import {
+  MAKING,
   PARAMETERS,
   type ParameterName,
   type Texts,
@@ -57,15 +58,7 @@ export function LiveSection() {
 
 /** Parameters that live evolution takes up at once. */
 const SET = [
-  "population",
-  "insertions",
-  "switches",
-  "toggles",
-  "types",
-  "weighting",
-  "fitness",
-  "selection",
-  "symmetry",
+  ...MAKING,
   "max_springs",
   "until_springs",
   "until_differential",
@@ -149,7 +142,7 @@ function Course({ live }: { live: LiveState }) {
       </p>
       <p className="explain">
         {limit !== null
-          ? `The net has as many springs as are allowed (${limit.toLocaleString("en")}): denser mutants can't become parents. Raise “${PARAMETERS.max_springs.label}” under Parameters for more.`
+          ? `The net has as many springs as are allowed (${inFull(limit)}): denser mutants can't become parents. Raise “${PARAMETERS.max_springs.label}” under Parameters for more.`
           : still > PATIENCE
             ? `No mutant was better in ${still < live.points.length ? still : `${still} or more`} generations; the parent stays. ${live.parameters.fitness === "differential" ? "Compared by spring utilization, nets may rise in differential while they become denser." : "Other parameters, or an anchor moved, set it going again."}`
             : live.parameters.fitness === "suf"

@@ -4,7 +4,7 @@ import { type MouseEvent, useRef } from "react";
 import { toast } from "sonner";
 import { useStore } from "zustand";
 import { useShallow } from "zustand/react/shallow";
-import type { Run } from "../document/run";
+import { mayContinue, type Run } from "../document/run";
 import { inDigits, inFull } from "../document/scale";
 import {
   changeRun,
@@ -109,7 +109,7 @@ function reading(start: number, now: number, parameters: Record<string, unknown>
 }
 
 function Course({ run }: { run: Run }) {
-  const { status, reason, following, generations } = run.state;
+  const { status, following, generations } = run.state;
   const { start_springs, start_differential } = run.state;
   const last = run.rows.at(-1);
   const steer = (what: "pause" | "continue" | "stop") =>
@@ -127,7 +127,7 @@ function Course({ run }: { run: Run }) {
             type="button"
             className="button icon primary"
             onClick={() => steer("continue")}
-            disabled={status === "ended" && reason !== "it was stopped"}
+            disabled={!mayContinue(run)}
           >
             <Play /> Continue
           </button>

@@ -2,6 +2,7 @@
 import { MEASURES } from "../document/choosing";
 import { compare, isComparing, likelySides, stopComparing, swapSides } from "../document/comparing";
 import { lookAt, shownSide, togglePin } from "../document/pins";
+import { mayContinue } from "../document/run";
 import { ask, type State, store } from "../document/store";
 import type { Command } from "./commands";
 import { takeOver } from "./confirming";
@@ -41,7 +42,9 @@ export const CHOOSING_COMMANDS: Command[] = [
     id: "run-continue",
     label: "Continue the run",
     group: "Choosing",
-    refused: whileRun("paused"),
+    refused: (state) =>
+      needsRun(state) ??
+      (state.run && mayContinue(state.run) ? null : "it goes on, or has reached its end"),
     run: steer("continue"),
   },
   {
