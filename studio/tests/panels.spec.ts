@@ -60,6 +60,8 @@ test("the framework is changed by form, and what is refused says why", async ({ 
   await expect
     .poll(async () => (await documentOf(page)).figures.springs)
     .toBeGreaterThan(2 * before.springs);
+  // The form begins anew once the page knows the change.
+  await expect(page.getByRole("button", { name: "Apply" })).toBeDisabled();
   await converged(page);
   const along = page.getByLabel("along", { exact: true });
   await along.fill("12");
