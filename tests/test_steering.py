@@ -76,6 +76,32 @@ def test_the_command_line_obeys_between_generations_to_the_same_bits(tmp_path: P
     assert sf.resume(other).digest() == run.digest()
 
 
+def test_a_run_stands_still_while_its_parameters_change(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    with driven(folder) as process:
+        steer(folder, "pause")
+        wait_for(lambda: (now := driver_of(folder)) is not None and now.standing)
+        at = sf.open_run(folder).generations
+        journal = folder / "journal.jsonl"
+        for count in range(1, 6):
+            steer(folder, "change", insertions=f"{count}%")
+            end = time.monotonic() + 60
+            seen = 0
+            # Whoever follows sees no moment in which it moves, until well after the change.
+            while seen < 100:
+                seen += f'"{count}%"' in journal.read_text()
+                now = driver_of(folder)
+                assert now is not None
+                assert now.standing
+                assert time.monotonic() < end
+                time.sleep(0.001)
+        steer(folder, "continue")
+        wait_for(lambda: (now := driver_of(folder)) is not None and not now.standing)
+        steer(folder, "stop")
+        process.wait(60)
+    assert sf.open_run(folder).generations >= at
+
+
 def test_the_studio_watches_and_steers_what_the_command_line_drives(tmp_path: Path) -> None:
     folder = tmp_path / "run"
     told = threading.Event()

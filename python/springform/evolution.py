@@ -311,6 +311,7 @@ class _Drive:
     def _obey(self) -> None:
         """Do what was asked; while the run stands still, wait a moment."""
         if self._stands:
+            self._writer.stand()
             time.sleep(_POLL)
         for request in self._requests.new():
             if request.what == "pause" and not self._stands:
@@ -318,7 +319,7 @@ class _Drive:
                 self._writer.stand()
             elif request.what == "continue":
                 self._stands = False
-                self._writer.checkpoint()
+                self._writer.go_on()
             elif request.what == "stop":
                 self._stopped = True
             elif request.what == "change":
@@ -339,8 +340,6 @@ class _Drive:
         self._parameters = changed
         run = open_run(self._folder)
         self._evolution = run.evolution(generation, threads=self._threads)
-        if self._stands:
-            writer.stand()
 
 
 @contextmanager

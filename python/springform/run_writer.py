@@ -64,7 +64,7 @@ class RunWriter:
 
     def checkpoint(self) -> None:
         """Write what was added. Raises `WriteError`: nothing of it counts as written then."""
-        self._lease.renew(standing=False)
+        self._lease.renew()
         if not self._waiting:
             return
         columns, lines = zip(*self._waiting, strict=True)
@@ -84,7 +84,14 @@ class RunWriter:
     def stand(self) -> None:
         """Write what was added, and say that the run stands still."""
         self.checkpoint()
-        self._lease.renew(standing=True)
+        self._lease.standing = True
+        self._lease.renew()
+
+    def go_on(self) -> None:
+        """Say that the run goes on, if it stood still."""
+        if self._lease.standing:
+            self._lease.standing = False
+            self._lease.renew()
 
     def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
         """Journal a change of parameters that holds from a generation on."""

@@ -32,6 +32,9 @@ ASKED: tuple[Asked, ...] = ("pause", "continue", "stop", "change")
 LEASE = 30.0
 """Seconds for which a driver on another machine counts as alive after it was heard [s]."""
 
+_LINE = 512
+"""Length of what a lock says [bytes]."""
+
 _WATCHED = 5.0
 """Seconds for which a run counts as watched after somebody looked [s]."""
 
@@ -65,24 +68,29 @@ class Request(BaseModel):
 
 
 class Lease:
-    """The lock of a run while this process drives it; made by `RunWriter`'s makers."""
+    """The lock of a run while this process drives it; made by `RunWriter`'s makers.
+
+    Attributes: `standing` (whether the run stands still; told at the next renewal).
+    """
 
     def __init__(self, file: int, program: Program) -> None:
         """Sign an open and locked lock file."""
         self._file = file
         self._program: Program = program
-        self.renew(standing=False)
+        self.standing = False
+        self.renew()
 
-    def renew(self, *, standing: bool) -> None:
+    def renew(self) -> None:
         """Say that the driver lives, and whether the run stands still."""
         driver = Driver(
             program=self._program,
             pid=os.getpid(),
             host=platform.node(),
             renewed=time.time(),
-            standing=standing,
+            standing=self.standing,
         )
-        text = driver.model_dump_json().encode() + b"\n"
+        # Of one length, so that whoever reads meanwhile finds no rest of a longer text.
+        text = driver.model_dump_json().encode().ljust(_LINE - 1) + b"\n"
         with suppress(OSError):  # a full disk must not end the run
             os.pwrite(self._file, text, 0)
             os.ftruncate(self._file, len(text))

@@ -298,6 +298,7 @@ class Evolving:
                 continue
             if self.status != "running":
                 continue
+            writer.go_on()
             self._keep(evolution, writer)
             if time.monotonic() - written > _CHECKPOINT:
                 writer.checkpoint()

@@ -118,12 +118,14 @@ function Course({ run }: { run: Run }) {
   return (
     <>
       <div className="row">
+        {/* Keys, so that a press on the one never reaches the other in its place. */}
         {status === "running" ? (
-          <button type="button" className="button icon" onClick={() => steer("pause")}>
+          <button key="pause" type="button" className="button icon" onClick={() => steer("pause")}>
             <Pause /> Pause
           </button>
         ) : (
           <button
+            key="continue"
             type="button"
             className="button icon primary"
             onClick={() => steer("continue")}
