@@ -160,8 +160,6 @@ test("springs are cut and added by hand", async ({ page, open }) => {
   await page.mouse.move(other.x, other.y);
   await page.mouse.click(other.x, other.y);
   await expect.poll(async () => (await documentOf(page)).figures.springs).toBe(before + 1);
-  // The engine knows before the page does.
-  await expect(page.getByText(`${before + 1} springs`)).toBeVisible();
   await converged(page);
   await page.keyboard.press("x");
   await page.mouse.click((anchor.x + other.x) / 2, (anchor.y + other.y) / 2);

@@ -81,8 +81,14 @@ export async function documentOf(page: Page): Promise<DocumentState> {
   return (await response.json()) as DocumentState;
 }
 
-/** Waits until the net has come to rest at equilibrium. */
+/** Waits until the net that the engine holds is shown and has come to rest at equilibrium. */
 export async function converged(page: Page): Promise<void> {
+  await expect
+    .poll(async () => {
+      const shown = await page.locator("main.viewport canvas").getAttribute("data-revision");
+      return Number(shown) - (await documentOf(page)).revision;
+    })
+    .toBe(0);
   await expect(page.locator(".badge")).toHaveText("converged");
 }
 

@@ -84,17 +84,14 @@ function Residual() {
 }
 
 function Counts() {
-  const figures = useStudio((state) => state.document?.figures);
   const net = useStudio((state) => state.net);
-  const live = useStudio((state) => (state.live?.status ?? "none") !== "none");
   const comparing = useIsComparing();
   // The figures of both nets that are compared stand beside them.
-  if (!figures || comparing) return null;
+  if (!net || comparing) return null;
   return (
     <span className="status-fact">
-      <b>{inFull(live && net ? net.ends.length / 2 : figures.springs)}</b> springs ·{" "}
-      <b>{inFull(live && net ? net.nodes.length : figures.nodes)}</b> nodes ·{" "}
-      <b>{inFull(live && net ? net.addresses.length : figures.cells)}</b> cells
+      <b>{inFull(net.ends.length / 2)}</b> springs · <b>{inFull(net.nodes.length)}</b> nodes ·{" "}
+      <b>{inFull(net.addresses.length)}</b> cells
     </span>
   );
 }

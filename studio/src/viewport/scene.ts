@@ -371,6 +371,8 @@ export class Viewport {
     if (current && (this.dirty || this.drawnRevision !== net.revision)) {
       this.update(state, net, motion);
       this.drawnRevision = net.revision;
+      // For whoever looks at the page: which net it shows.
+      this.canvas.dataset.revision = String(net.revision);
       this.dirty = false;
     }
     for (const child of this.scene.children) child.visible &&= this.drawnRevision > 0;
