@@ -18,6 +18,7 @@ import {
   expect,
   revisit,
   startStudio,
+  still,
   test,
 } from "./studio";
 
@@ -238,7 +239,7 @@ test("a ranking is what sorting by value gives", () => {
 
 /** Share of the left and of the right half of the canvas that is not ground, and a hash of each. */
 async function halves(page: Page): Promise<{ lit: number; hash: number }[]> {
-  await page.waitForTimeout(600);
+  await still(page);
   const picture = await page.locator("main.viewport").screenshot();
   const { data, width, height } = PNG.sync.read(picture);
   const pixels = new Uint32Array(data.buffer, data.byteOffset, width * height);
@@ -311,8 +312,10 @@ test("two nets are compared side by side under one eye", async ({ page, open, ho
     2,
   );
 
+  await expect
+    .poll(async () => (await halves(page)).filter(({ lit }) => lit > 0.02).length)
+    .toBe(2);
   const before = await halves(page);
-  for (const { lit } of before) expect(lit).toBeGreaterThan(0.02);
   expect(before[0].hash).not.toBe(before[1].hash);
   await accessible(page);
   // A drag over the left net turns the right one as well, by the same eye.

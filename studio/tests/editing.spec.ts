@@ -5,7 +5,7 @@ import type { Net } from "../src/document/net";
 import type { Section } from "../src/document/section";
 import { Projection, pick } from "../src/viewport/picking";
 import { MIDDLING, pictureOf, STRONGEST } from "./picture";
-import { anchorPlace, converged, documentOf, expect, still, test } from "./studio";
+import { anchorPlace, converged, documentOf, expect, nextPicture, still, test } from "./studio";
 
 test("the law of a cylinder is changed while the net moves, and taken back", async ({
   page,
@@ -164,7 +164,7 @@ test("whatever a section shows of a spring can be picked", async ({ page, open }
   await page.keyboard.press("k");
   await page.getByRole("button", { name: "Section across x" }).click();
   await page.mouse.move(500, 760);
-  await page.waitForTimeout(800);
+  await still(page);
   // Everything that is drawn answers, up to the very plane.
   const ground = await pictureOf(page);
   const card = page.locator(".hover-card");
@@ -173,7 +173,7 @@ test("whatever a section shows of a spring can be picked", async ({ page, open }
   for (let sample = 0; sample < 60; sample++) {
     const { x, y } = springs[Math.floor((sample / 60) * springs.length)];
     await page.mouse.move(x, y);
-    await page.waitForTimeout(80);
+    await nextPicture(page);
     expect(await card.count(), `something lies at ${x}, ${y}`).toBe(1);
   }
 });

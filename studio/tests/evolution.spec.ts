@@ -40,6 +40,9 @@ test("a researcher evolves, changes course, and takes a net over", async ({ page
   await expect.poll(() => generations(page)).toBeGreaterThan(paused + 2);
   await page.getByRole("button", { name: "Stop", exact: true }).click();
   await expect(page.locator(".section", { hasText: "Run" }).first()).toContainText("ended");
+  await expect(
+    page.getByRole("img", { name: /^Spring utilization factor over .*, now / }),
+  ).toBeVisible();
 
   await page.getByRole("button", { name: "Pictures" }).click();
   const made = await generations(page);

@@ -1,7 +1,15 @@
 // Grafting in the browser: cells are selected, copied as a patch, and set elsewhere.
 import type { Page } from "@playwright/test";
 import { PNG } from "pngjs";
-import { anchorPlace, clickCellAbove, converged, documentOf, expect, test } from "./studio";
+import {
+  anchorPlace,
+  clickCellAbove,
+  converged,
+  documentOf,
+  expect,
+  nextPicture,
+  test,
+} from "./studio";
 
 async function greenPixels(page: Page): Promise<number> {
   const { data } = PNG.sync.read(await page.locator("main.viewport").screenshot());
@@ -18,7 +26,7 @@ export async function lasso(page: Page, x: number, y: number, radius: number): P
   for (let step = 1; step <= 16; step++) {
     const angle = (2 * Math.PI * step) / 16;
     await page.mouse.move(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
-    await page.waitForTimeout(20);
+    await nextPicture(page);
   }
   await page.mouse.up();
 }
@@ -87,8 +95,7 @@ test("a designer grafts a patch of an individual under every anchor", async ({ p
   await expect(page.locator(".looking")).toContainText("individual");
   const looking = (await documentOf(page)).looking!;
   await page.getByRole("tab", { name: "Graft", exact: true }).click();
-  await page.waitForTimeout(1000);
-
+  await converged(page);
   await page.locator("main.viewport canvas").focus();
   await page.keyboard.press("Shift+L");
   const anchor = await anchorPlace(page, "A3");

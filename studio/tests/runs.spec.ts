@@ -94,7 +94,8 @@ test("a kill in mid-generation changes no bit of the run", async ({ page, open, 
 
   const again = await startStudio(home, undefined, Number(port));
   await revisit(page, again, hash);
-  await page.getByRole("tab", { name: "Evolve" }).click();
+  // The panel that was in front is in front again.
+  await expect(page.locator(".panel-evolve")).toContainText("paused: nobody drives it");
   await page.getByRole("button", { name: "Continue" }).click();
   await expect(page.locator(".panel-evolve")).toContainText("ended");
   expect(await generations(page)).toBe(90);

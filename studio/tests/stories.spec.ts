@@ -8,8 +8,10 @@ import {
   converged,
   documentOf,
   expect,
+  nextPicture,
   revisit,
   startStudio,
+  still,
   test,
 } from "./studio";
 
@@ -97,14 +99,14 @@ test("an architect relieves an anchor cell by cell", async ({ page, open }) => {
   await page.getByRole("button", { name: "Apply to all springs" }).click();
   await expect.poll(async () => (await documentOf(page)).position).toBe(1);
   await converged(page);
-  await page.waitForTimeout(600);
+  await still(page);
   const before = await documentOf(page);
   const anchor = await anchorPlace(page, "A4");
   // The reddest cord, where no node is nearer.
   const card = page.locator(".hover-card");
   for (const place of (await pictureOf(page)).nearest(STRONGEST).filter((_, at) => at % 9 === 0)) {
     await page.mouse.move(place.x, place.y);
-    await page.waitForTimeout(60);
+    await nextPicture(page);
     if ((await card.count()) && (await card.textContent())?.startsWith("Spring")) break;
   }
   await expect(card).toContainText("Force");
