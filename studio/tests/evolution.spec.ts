@@ -44,6 +44,16 @@ test("a researcher evolves, changes course, and takes a net over", async ({ page
     page.getByRole("img", { name: /^Spring utilization factor over .*, now / }),
   ).toBeVisible();
 
+  // Graphs take their colours with the page.
+  const graph = page.locator(".panel-evolve .graph canvas").first();
+  const drawn = () => graph.evaluate((canvas: HTMLCanvasElement) => canvas.toDataURL());
+  await page.locator("main.viewport canvas").focus();
+  const dark = await drawn();
+  await page.keyboard.press("d");
+  await expect.poll(drawn).not.toBe(dark);
+  await page.keyboard.press("d");
+  await expect.poll(drawn).toBe(dark);
+
   await page.getByRole("button", { name: "Pictures" }).click();
   const made = await generations(page);
   await expect(page.locator(".gallery header")).toContainText(

@@ -98,7 +98,7 @@ class Evolving:
             return
         self.driver = driver_of(self.folder)
         if self.driver is not None:
-            self.status = "paused" if self.driver.standing else "running"
+            self._driven(self.driver)
             self._watching.clear()
             self._thread = threading.Thread(target=self._follow, name="watching", daemon=True)
             self._thread.start()
@@ -349,7 +349,7 @@ class Evolving:
                 break
             before = self.driver, self.status
             if driver is not None:
-                self.status = "paused" if driver.standing else "running"
+                self._driven(driver)
             else:
                 self.status, self.reason = self._left()
             # Last, since whoever finds no driver goes by the status.
@@ -360,11 +360,14 @@ class Evolving:
                 break
             self._watching.wait(_POLL)
 
+    def _driven(self, driver: Driver) -> None:
+        self.status, self.reason = "paused" if driver.standing else "running", ""
+
     def _left(self) -> tuple[Status, str]:
         """Return how a run stands that its driver has left."""
         evolution = self._algorithm(len(self.rows), threads=1)
         reason = evolution.reached(*self.parameters.ending())
-        return ("paused", "") if reason is None else ("ended", ENDINGS[reason])
+        return ("paused", "nobody drives it") if reason is None else ("ended", ENDINGS[reason])
 
     def _keep(self, evolution: _core.Evolution, writer: RunWriter) -> None:
         result = evolution.advance()

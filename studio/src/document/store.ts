@@ -40,7 +40,9 @@ export type ToolId =
   | "graft"
   | "weigh";
 
-export type PanelId = "net" | "cells" | "framework" | "evolve" | "graft" | "history";
+const PANELS = ["net", "cells", "framework", "evolve", "graft", "history"] as const;
+
+export type PanelId = (typeof PANELS)[number];
 
 /** How the net is shown. */
 export interface View {
@@ -188,6 +190,19 @@ store.subscribe(({ view, theme }, before) => {
     localStorage.setItem(KEPT, JSON.stringify({ view, theme }));
 });
 
+const KEPT_PANEL = "springform panel";
+
+/** The panel of a document that is in front again after its window was loaded anew. */
+function keptPanel(id: string): PanelId {
+  const [kept, panel] = (sessionStorage.getItem(KEPT_PANEL) ?? "").split(" ");
+  return (kept === id && PANELS.find((one) => one === panel)) || "net";
+}
+
+store.subscribe(({ panel, document }, before) => {
+  if (document && (panel !== before.panel || !before.document))
+    sessionStorage.setItem(KEPT_PANEL, `${document.document} ${panel}`);
+});
+
 let connection: Connection | null = null;
 let notices = 0;
 
@@ -207,7 +222,7 @@ export function openDocument(id: string): void {
     pins: [],
     pinnedOnly: false,
     marked: [],
-    panel: "net" as const,
+    panel: keptPanel(id),
     preview: null,
     selection: NOTHING,
     hover: null,

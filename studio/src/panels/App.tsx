@@ -41,9 +41,6 @@ export function App() {
   const id = useDocumentInAddress();
   const theme = useStudio((state) => state.theme);
   const gallery = useStudio(showsGallery);
-  useEffect(() => {
-    document.documentElement.dataset.theme = theme;
-  }, [theme]);
   useNotices(id);
   useFocusFrames();
   useSteadyPresses();

@@ -1,9 +1,9 @@
-// How a run goes: force differential of the parent within its population, and springs, over generations.
+// How a run goes: what its parent is within its population, over generations.
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Run } from "../document/run";
-import { inFull } from "../document/scale";
+import { inDigits, inFull } from "../document/scale";
 import { useStudio } from "./use";
 
 /** Steps between generations that have a number: whole ones. */
@@ -11,13 +11,19 @@ const GENERATIONS = [0, 1, 2, 3, 4, 5, 6].flatMap((power) => [1, 2, 5].map((n) =
 
 type Column = (number | null)[];
 
+/** What is drawn over generations. */
+export type Of = "differential" | "springs" | "suf";
+
+/** Colours of lines that stand alone. */
+const LINES: Record<Exclude<Of, "differential">, string> = { springs: "--good", suf: "--second" };
+
 export function RunGraph({
   rows,
   of,
   own,
 }: {
   rows: Run["rows"];
-  of: "differential" | "springs";
+  of: Of;
   /** Value of the design that it started from, drawn as a line. */
   own: number | null;
 }) {
@@ -51,7 +57,7 @@ export function RunGraph({
             { stroke: colour("--accent"), width: 2, points: { show: false } },
             start,
           ]
-        : [{}, { stroke: colour("--good"), width: 2, points: { show: false } }, start];
+        : [{}, { stroke: colour(LINES[of]), width: 2, points: { show: false } }, start];
     const made = new uPlot(
       {
         width: box.current!.clientWidth,
@@ -96,24 +102,24 @@ export function RunGraph({
     marks.current = rows.filter(({ changed }) => changed).map(({ generation }) => generation);
     plot.current?.setData(dataOf(rows, of, own));
   }, [rows, of, own]);
-  const last = rows.at(-1);
-  const words =
-    of === "differential"
-      ? `Force differential over ${inFull(rows.length)} generations, now ${last?.force_differential?.toFixed(2) ?? "undefined"}, at the start ${own?.toFixed(2) ?? "undefined"}`
-      : `Springs over ${inFull(rows.length)} generations, now ${inFull(last?.springs ?? 0)}`;
-  return <div className="graph" ref={box} role="img" aria-label={words} />;
+  return <div className="graph" ref={box} role="img" aria-label={described(rows, of, own)} />;
 }
 
-function dataOf(
-  rows: Run["rows"],
-  of: "differential" | "springs",
-  own: number | null,
-): uPlot.AlignedData {
+function described(rows: Run["rows"], of: Of, own: number | null): string {
+  const last = rows.at(-1);
+  const over = `over ${inFull(rows.length)} generations, now`;
+  if (of === "springs") return `Springs ${over} ${inFull(last?.springs ?? 0)}`;
+  if (of === "suf") return `Spring utilization factor ${over} ${inDigits(last?.suf, 4)}`;
+  const fixed = (value: number | null | undefined) => value?.toFixed(2) ?? "undefined";
+  return `Force differential ${over} ${fixed(last?.force_differential)}, at the start ${fixed(own)}`;
+}
+
+function dataOf(rows: Run["rows"], of: Of, own: number | null): uPlot.AlignedData {
   const generations = rows.map(({ generation }) => generation);
-  const column = (name: "low" | "median" | "high" | "force_differential" | "springs"): Column =>
-    rows.map((row) => row[name]);
+  type Value = "low" | "median" | "high" | "force_differential" | "springs" | "suf";
+  const column = (name: Value): Column => rows.map((row) => row[name]);
   const start: Column = rows.map(() => own);
-  if (of === "springs") return [generations, column("springs"), start];
+  if (of !== "differential") return [generations, column(of), start];
   return [
     generations,
     column("low"),

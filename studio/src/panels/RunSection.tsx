@@ -172,13 +172,15 @@ function Course({ run }: { run: Run }) {
           <p className="graph-words">
             <i className="swatch good" /> springs <b>{inFull(last.springs)}</b>
           </p>
+          <RunGraph rows={run.rows} of="suf" own={null} />
+          <p
+            className="graph-words"
+            title="How much the force differential rose for every spring that came since the start; 0 or less: it did not rise"
+          >
+            <i className="swatch second" /> spring utilization factor <b>{inDigits(last.suf, 4)}</b>
+          </p>
           <p className="explain">{reading(start_springs, last.springs, run.state.parameters)}</p>
           <Fact name="Generations" value={generations} count />
-          <Fact
-            name="Spring utilization factor"
-            value={last.suf}
-            title="How much the force differential rose for every spring that came since the start; 0 or less: it did not rise"
-          />
         </>
       )}
     </>
@@ -204,7 +206,7 @@ function LookButton({ stands }: { stands: boolean }) {
 
 function words(status: string, reason: string): string {
   if (status === "running") return "running";
-  if (status === "paused") return "paused";
+  if (status === "paused") return reason ? `paused: ${reason}` : "paused";
   return status === "failed" ? reason : `ended: ${reason}`;
 }
 
