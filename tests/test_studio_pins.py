@@ -14,6 +14,10 @@ import pytest
 import springform as sf
 from springform.comparison import compare
 from springform.errors import InputError
+from springform.patch_file import load_patch
+from springform.selections import select
+from springform.studio.grafts import lifted
+from springform.studio.messages import CopyPatch
 from springform.studio.pins import PinFolder
 from springform.studio.telling import figures_of
 from studio_client import Server, Window, decode, serving
@@ -161,6 +165,24 @@ def test_the_net_that_is_named_is_taken_over_whatever_is_shown_by_then(server: S
         assert (last["origin"]["generation"], last["origin"]["individual"]) == (4, 2)
         assert "your design" in window.ask(type="reinstate", side="design")["problem"]
         assert "0 to 5" in window.ask(type="reinstate", side="run/77")["problem"]
+
+
+def test_a_patch_is_of_the_net_that_is_named_whatever_is_shown_by_then(
+    server: Server, run: sf.Run, tmp_path: Path
+) -> None:
+    individual = run.individual(4, 2)
+    cells = select(individual, "all").expressed(individual.forest)
+    asked = CopyPatch(id=1, name="crown", cells=cells, anchor=None, seed=None, side="run/4/2")
+    request = asked.model_dump(exclude={"id"})
+    with server.window() as window:
+        window.ask(type="look", generation=5, individual=None, pin=None)
+        assert window.ask(**request)["problem"] is None
+        assert "0 to 5" in window.ask(**request | {"side": "run/77"})["problem"]
+    patch = load_patch(tmp_path / "home" / "patches" / "crown.toml")
+    assert patch.origin is not None
+    assert (patch.origin.generation, patch.origin.individual) == (4, 2)
+    assert patch.cells == lifted(individual, asked, patch.origin).cells
+    assert patch.cells != lifted(run.parent(5), asked, patch.origin).cells
 
 
 def test_a_design_taken_over_from_a_pin_keeps_the_name_of_the_pin(server: Server) -> None:

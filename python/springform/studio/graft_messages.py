@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ..schema_base import NAME_PATTERN
-from .message_base import Address, Key, Message
+from .message_base import Address, Key, Message, Side
 
 PatchName = Annotated[str, Field(pattern=NAME_PATTERN, max_length=60)]
 
@@ -21,6 +21,8 @@ class SelectCells(Message):
     """A selection as files and the command line have it, such as ``rings(A7, 2)``."""
     cells: Annotated[list[Address], Field(max_length=100_000)] = Field(default_factory=list)
     """Cells to start from, if there are no words."""
+    around_best: Annotated[int, Field(ge=1, le=100)] | None = None
+    """Rings of cells round the anchor that is resolved best, instead of words."""
     grow: Annotated[int, Field(ge=-100, le=100)] = 0
     """Rings of cells to add to them, or to take away."""
     orbit: bool = False
@@ -42,7 +44,10 @@ class ListPatches(Message):
 
 
 class CopyPatch(Message):
-    """Lift a patch from what is shown and keep it in the folder of patches."""
+    """Lift a patch from a net and keep it in the folder of patches.
+
+    The net is named, since what is shown changes while a run is followed.
+    """
 
     type: Literal["copy_patch"] = "copy_patch"
     id: int
@@ -52,6 +57,7 @@ class CopyPatch(Message):
     """Anchor that it is seen from."""
     seed: Annotated[int, Field(ge=0)] | None
     """Top-level cell that it is seen from; None of both: whatever needs the fewest words."""
+    side: Side = "design"
 
 
 class RenamePatch(Message):

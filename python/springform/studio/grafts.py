@@ -14,7 +14,7 @@ from .. import _core
 from ..arrays import Floats
 from ..design import Design
 from ..errors import DesignError, InputError
-from ..grafting import Frame, Grafted, graft, lift
+from ..grafting import Frame, Grafted, best_anchor, graft, lift
 from ..patch_file import Origin, Patch
 from ..selections import select, vertex_of
 from .changes import Action, ForestChange, ValueChange, values_of
@@ -33,8 +33,11 @@ from .orbits import cell_orbit
 
 def selected(design: Design, request: SelectCells) -> list[str]:
     """Return the expressed cells that a request selects. Raises `InputError`: there are none."""
-    if request.words is not None:
-        chosen = select(design, request.words)
+    words = request.words
+    if request.around_best is not None:
+        words = f'rings("{best_anchor(design)}", {request.around_best})'
+    if words is not None:
+        chosen = select(design, words)
     elif request.cells:
         chosen = _core.Selection(design.mesh, request.cells)
     else:

@@ -425,12 +425,16 @@ class Session:
     def _filed(self, request: ListPatches | CopyPatch | RenamePatch | DeletePatch) -> None:
         match request:
             case CopyPatch():
-                looked = None if self._looking is None else self._looking.looked
+                net = self.pins.net(request.side)
+                if request.side == "design":
+                    self._check_nothing_evolves()
                 origin = Origin()
-                if looked is not None and looked.generation is not None:
-                    run, place = str(self.runs.known().folder), looked.individual
-                    origin = Origin(run=run, generation=looked.generation, individual=place)
-                self._patches.keep(grafts.lifted(self.shown, request, origin))
+                if request.side.startswith("run/") and (place := net.place) is not None:
+                    run = str(self.runs.known().folder)
+                    origin = Origin(
+                        run=run, generation=place.generation, individual=place.individual
+                    )
+                self._patches.keep(grafts.lifted(net.design, request, origin))
             case RenamePatch():
                 self._patches.rename(request.patch, request.name)
             case DeletePatch():

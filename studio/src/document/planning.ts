@@ -1,23 +1,25 @@
 // What is asked of the engine for selections and grafts; problems of a plan are shown where it is.
 import type { GraftPlan, SymmetryState } from "../protocol/messages";
 import { type Grafting, grafting, type Place, putAway } from "./grafting";
-import type { Motion } from "./motion";
-import type { Net } from "./net";
+import { shownSide } from "./pins";
 import { NOTHING } from "./selection";
 import { ask, askQuietly, select, selecting, store } from "./store";
 
 /** Selects what words say, or a selection grown by some rings; not if something else was selected meanwhile. */
 export async function selectBy(
-  request: { words: string } | { cells: string[]; grow: number } | { cells: string[]; orbit: true },
+  request:
+    | { words: string }
+    | { around_best: number }
+    | { cells: string[]; grow: number }
+    | { cells: string[]; orbit: true },
   adding: boolean,
 ): Promise<void> {
   const { selection } = store.getState();
   const before = adding && selection.kind === "cells" ? selection.keys : [];
   const answer = selecting();
-  await ask(
-    { type: "select_cells", words: null, cells: [], grow: 0, orbit: false, ...request },
-    "Selecting",
-    ({ cells }) => answer({ kind: "cells", keys: [...new Set([...before, ...cells])] }),
+  const nothing = { words: null, around_best: null, cells: [], grow: 0, orbit: false };
+  await ask({ type: "select_cells", ...nothing, ...request }, "Selecting", ({ cells }) =>
+    answer({ kind: "cells", keys: [...new Set([...before, ...cells])] }),
   );
 }
 
@@ -49,23 +51,9 @@ export function selectAll(): void {
   select(net ? { kind: "cells", keys: [...net.addresses] } : NOTHING);
 }
 
-/** Row of the anchor at which the largest force is least: the one that is resolved best. */
-export function bestAnchor({ anchors, ends }: Net, { forces }: Motion): number {
-  const peaks = new Map([...anchors].map((node) => [node, 0]));
-  for (let at = 0; at < ends.length; at++) {
-    const peak = peaks.get(ends[at]);
-    if (peak !== undefined) peaks.set(ends[at], Math.max(peak, forces[at >> 1]));
-  }
-  const sizes = [...anchors].map((node) => peaks.get(node)!);
-  return sizes.indexOf(Math.min(...sizes));
-}
-
 /** Selects the two rings of cells round the anchor that is resolved best. */
 export function selectBestAnchor(): void {
-  const { net, motion } = store.getState();
-  if (!net?.anchors.length || !motion || motion.header.revision !== net.revision) return;
-  const node = net.nodes[net.anchors[bestAnchor(net, motion)]];
-  selectBy({ words: `rings("${node}", 2)` }, false);
+  selectBy({ around_best: 2 }, false);
 }
 
 /** Anchors at the corners of the selected cells. */
@@ -133,8 +121,10 @@ export function freeName({ patches } = grafting.getState()): string {
 
 /** Keeps the selected cells as a patch; resolves to whether it did. */
 export async function copyPatch(name: string, { anchor, seed }: SeenFrom): Promise<boolean> {
-  const cells = store.getState().selection.keys;
-  return !!(await ask({ type: "copy_patch", name, cells, anchor, seed }, "Copying the patch"));
+  const { document, selection } = store.getState();
+  const [cells, side] = [selection.keys, shownSide(document)];
+  const request = { type: "copy_patch", name, cells, anchor, seed, side } as const;
+  return !!(await ask(request, "Copying the patch"));
 }
 
 export function listPatches(): void {

@@ -408,6 +408,10 @@ export interface SelectCells {
    */
   cells: string[];
   /**
+   * Rings of cells round the anchor that is resolved best, instead of words.
+   */
+  around_best: number | null;
+  /**
    * Rings of cells to add to them, or to take away.
    */
   grow: number;
@@ -431,7 +435,9 @@ export interface ListPatches {
   id: number;
 }
 /**
- * Lift a patch from what is shown and keep it in the folder of patches.
+ * Lift a patch from a net and keep it in the folder of patches.
+ *
+ * The net is named, since what is shown changes while a run is followed.
  */
 export interface CopyPatch {
   type: "copy_patch";
@@ -450,6 +456,7 @@ export interface CopyPatch {
    * Top-level cell that it is seen from; None of both: whatever needs the fewest words.
    */
   seed: number | null;
+  side: string;
 }
 /**
  * Give a patch another name.
