@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import errno
 import os
+import pty
+import random
+import re
 import resource
 import shutil
 import signal
 import subprocess
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -117,21 +121,46 @@ def test_standard_output_that_is_full_or_closed(net: Path) -> None:
 # --- interrupts and memory ---------------------------------------------------------------------
 
 
-def interrupted(*words: str | Path, after: float) -> Result:
-    process = start(*words)
-    time.sleep(after)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
-    return Result(process.returncode, out, err)
+def interrupted(*words: str | Path) -> Result:
+    """Interrupt the command once the bar on its terminal says that one of many steps is made."""
+    terminal, end = pty.openpty()
+    wide = os.environ | {"TERM": "xterm", "COLUMNS": "200"}
+    with open(terminal, "rb", buffering=0) as shown, start(*words, stderr=end, env=wide) as process:
+        os.close(end)
+        err = b""
+        while not re.search(rb"[1-9]\d*/\d+", err):
+            err += shown.read(1000)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        with suppress(OSError):  # the end of a terminal that nobody writes to any more
+            while more := shown.read(1000):
+                err += more
+    return Result(process.returncode, out, err.decode())
 
 
 def test_an_interrupted_search_keeps_its_steps(folder: Path) -> None:
     words = ("seek", "three-cylinders-dense", "--steps", "100000", "--type", "2", "--out", "a.toml")
-    result = interrupted(*words, after=1.5)
+    result = interrupted(*words)
     assert (result.code, result.out) == (130, "")
     assert_says(result.err, "interrupted", "a.toml")
     before = len(sf.load("three-cylinders-dense").network().springs)
     assert len(sf.load(folder / "a.toml").network().springs) > before
+
+
+def test_an_interrupt_while_it_loads_says_nothing() -> None:
+    draw, codes = random.Random(0), []
+    for _ in range(16):
+        process = start("solve", "one-cylinder")
+        maps = Path(f"/proc/{process.pid}/maps")
+        while "springform/_core" not in maps.read_text():
+            time.sleep(0.001)
+        time.sleep(draw.uniform(0, 0.8))
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        assert process.returncode in (0, 130, -signal.SIGINT), err
+        assert err in ("", "springform: interrupted\n")
+        codes.append(process.returncode)
+    assert -signal.SIGINT in codes
 
 
 def test_a_search_that_fails_keeps_its_steps(folder: Path) -> None:
@@ -156,6 +185,6 @@ def test_two_interrupts_at_once_do_no_harm(folder: Path) -> None:
 
 def test_a_large_population_can_be_interrupted(folder: Path) -> None:
     words = ("--population", "3000", "--generations", "1000", "--out", "run")
-    result = interrupted("evolve", "one-cylinder", *words, after=2.0)
+    result = interrupted("evolve", "one-cylinder", *words)
     assert result.code == 130, result
     assert_says(result.err, "interrupted", "springform resume run")

@@ -48,6 +48,9 @@ def main() -> None:
         code = _refuse(f"{where}{explain(error)}")
     except typer.Exit as request:
         code = request.exit_code
+    except KeyboardInterrupt:  # before a command began
+        say("springform: interrupted")
+        code = INTERRUPTED
     except StoppedError as error:
         say(f"springform: interrupted; {error}")
         code = INTERRUPTED
