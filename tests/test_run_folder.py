@@ -392,10 +392,11 @@ def test_an_empty_folder_becomes_a_run(tmp_path: Path) -> None:
 
 def test_an_interrupt_ends_with_the_generation(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    words = ("--population", "20", "--generations", "100000", "--out", folder, "--threads", "1")
-    process = start("evolve", "one-cylinder", *words)
-    wait_for((folder / "run.json").exists, "run")
-    time.sleep(0.3)
+    endless = ("--population", "20", "--generations", "100000", "--threads", "1")
+    words = command(FREQUENT, 0.05, "evolve", "one-cylinder", "--out", folder, *endless)
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen(words, **pipes)
+    wait_for(lambda: generations_of(folder) > 0, "generation")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=30)
     assert process.returncode == 130, err
