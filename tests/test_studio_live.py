@@ -259,8 +259,10 @@ def test_keeping_is_one_action_and_discarding_none(window: Window) -> None:
     springs = window.document["figures"]["springs"]
     assert window.ask(type="live_evolve", what="start")["problem"] is None
     live_at(window, 3)
-    refused = window.ask(type="seek_stress", steps=1, kind="1")["problem"]
-    assert refused == "the net evolves; keep or discard what it grew first"
+    copy = {"type": "copy_patch", "name": "crown", "cells": ["0"], "anchor": None, "seed": None}
+    for request in ({"type": "seek_stress", "steps": 1, "kind": "1"}, copy):
+        refused = window.ask(**request)["problem"]
+        assert refused == "the net evolves; keep or discard what it grew first"
     moved = [0.5, 0.5, 4.0]
     assert window.ask(type="move_anchor", anchor="A1", position=moved)["problem"] is None
     live_at(window, 6)
