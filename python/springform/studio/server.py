@@ -45,6 +45,9 @@ HOST = "127.0.0.1"
 STATIC = Path(__file__).parent / "static"
 """Where the build puts the page."""
 
+_KEEP_ALIVE = 600
+"""Time for which an idle connection stays open [s]; one that closes as it is used again fails."""
+
 _LARGEST_MESSAGE = 4 * 2**20
 """Bytes of a request [B]; beyond it the window is cut off."""
 
@@ -176,6 +179,7 @@ def serve(
         log_level="warning",
         access_log=False,
         timeout_graceful_shutdown=1,
+        timeout_keep_alive=_KEEP_ALIVE,
         server_header=False,
     )
     server = _Server(config, lambda: on_ready(f"http://{HOST}:{port}/?token={token}"))
