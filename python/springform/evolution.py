@@ -314,9 +314,8 @@ class _Drive:
             self._writer.stand()
             time.sleep(_POLL)
         for request in self._requests.new():
-            if request.what == "pause" and not self._stands:
+            if request.what == "pause":
                 self._stands = True
-                self._writer.stand()
             elif request.what == "continue":
                 self._stands = False
                 self._writer.go_on()

@@ -84,14 +84,11 @@ class RunWriter:
     def stand(self) -> None:
         """Write what was added, and say that the run stands still."""
         self.checkpoint()
-        self._lease.standing = True
-        self._lease.renew()
+        self._lease.say(standing=True)
 
     def go_on(self) -> None:
         """Say that the run goes on, if it stood still."""
-        if self._lease.standing:
-            self._lease.standing = False
-            self._lease.renew()
+        self._lease.say(standing=False)
 
     def change(self, generation: int, parameters: Mapping[str, Any]) -> None:
         """Journal a change of parameters that holds from a generation on."""

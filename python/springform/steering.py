@@ -68,26 +68,29 @@ class Request(BaseModel):
 
 
 class Lease:
-    """The lock of a run while this process drives it; made by `RunWriter`'s makers.
-
-    Attributes: `standing` (whether the run stands still; told at the next renewal).
-    """
+    """The lock of a run while this process drives it; made by `RunWriter`'s makers."""
 
     def __init__(self, file: int, program: Program) -> None:
         """Sign an open and locked lock file."""
         self._file = file
         self._program: Program = program
-        self.standing = False
+        self._standing = False
         self.renew()
 
+    def say(self, *, standing: bool) -> None:
+        """Say that the run stands still, or goes on, if that is new."""
+        if standing != self._standing:
+            self._standing = standing
+            self.renew()
+
     def renew(self) -> None:
-        """Say that the driver lives, and whether the run stands still."""
+        """Say that the driver lives."""
         driver = Driver(
             program=self._program,
             pid=os.getpid(),
             host=platform.node(),
             renewed=time.time(),
-            standing=self.standing,
+            standing=self._standing,
         )
         # Of one length, so that whoever reads meanwhile finds no rest of a longer text.
         text = driver.model_dump_json().encode().ljust(_LINE - 1) + b"\n"

@@ -2,7 +2,7 @@
 import { createStore } from "zustand/vanilla";
 import type { Asking, Refused } from "../protocol/connection";
 import { MAKING, type ParameterName, type Texts, textOf, valueSaid } from "./parameters";
-import { askQuietly, forgetNotice, notify, type State, store } from "./store";
+import { ask, askQuietly, forgetNotice, notify, type State, store } from "./store";
 
 /** What a person may set; the rest has the engine's defaults. */
 export const SET = [
@@ -103,6 +103,11 @@ export async function startRun(): Promise<boolean> {
   beginning = false;
   if (begun) starting.setState({ open: false });
   return begun;
+}
+
+/** Asks whoever drives the run to pause it, go on with it or end it. */
+export function steerRun(what: "pause" | "continue" | "stop"): void {
+  ask({ type: "steer_run", what, parameters: {} }, "Steering the run");
 }
 
 /** Gives the run that goes on what is typed. */

@@ -12,7 +12,7 @@ const GENERATIONS = [0, 1, 2, 3, 4, 5, 6].flatMap((power) => [1, 2, 5].map((n) =
 type Column = (number | null)[];
 
 /** What is drawn over generations. */
-export type Of = "differential" | "springs" | "suf";
+type Of = "differential" | "springs" | "suf";
 
 /** Colours of lines that stand alone. */
 const LINES: Record<Exclude<Of, "differential">, string> = { springs: "--good", suf: "--second" };

@@ -12,6 +12,7 @@ import {
   SET,
   starting,
   startRun,
+  steerRun,
   textsShown,
   typeParameter,
 } from "../document/starting";
@@ -112,15 +113,18 @@ function Course({ run }: { run: Run }) {
   const { status, following, generations } = run.state;
   const { start_springs, start_differential } = run.state;
   const last = run.rows.at(-1);
-  const steer = (what: "pause" | "continue" | "stop") =>
-    ask({ type: "steer_run", what, parameters: {} }, "Steering the run");
   const alive = status === "running" || status === "paused";
   return (
     <>
       <div className="row">
         {/* Keys, so that a press on the one never reaches the other in its place. */}
         {status === "running" ? (
-          <button key="pause" type="button" className="button icon" onClick={() => steer("pause")}>
+          <button
+            key="pause"
+            type="button"
+            className="button icon"
+            onClick={() => steerRun("pause")}
+          >
             <Pause /> Pause
           </button>
         ) : (
@@ -128,7 +132,7 @@ function Course({ run }: { run: Run }) {
             key="continue"
             type="button"
             className="button icon primary"
-            onClick={() => steer("continue")}
+            onClick={() => steerRun("continue")}
             disabled={!mayContinue(run)}
           >
             <Play /> Continue
@@ -137,7 +141,7 @@ function Course({ run }: { run: Run }) {
         <button
           type="button"
           className="button icon"
-          onClick={() => steer("stop")}
+          onClick={() => steerRun("stop")}
           disabled={!alive}
         >
           <Square /> Stop

@@ -3,6 +3,7 @@ import { MEASURES } from "../document/choosing";
 import { compare, isComparing, likelySides, stopComparing, swapSides } from "../document/comparing";
 import { lookAt, shownSide, togglePin } from "../document/pins";
 import { mayContinue } from "../document/run";
+import { steerRun } from "../document/starting";
 import { ask, type State, store } from "../document/store";
 import type { Command } from "./commands";
 import { takeOver } from "./confirming";
@@ -13,11 +14,6 @@ const needsRun = ({ run }: State) =>
 
 const needsLook = ({ document }: State) =>
   document?.looking ? null : "your design is what is shown";
-
-/** Asks whoever drives the run. */
-function steer(what: "pause" | "continue" | "stop"): () => void {
-  return () => void ask({ type: "steer_run", what, parameters: {} }, "Steering the run");
-}
 
 function whileRun(...statuses: string[]): (state: State) => string | null {
   return ({ run }) => {
@@ -36,7 +32,7 @@ export const CHOOSING_COMMANDS: Command[] = [
     label: "Pause the run",
     group: "Choosing",
     refused: whileRun("running"),
-    run: steer("pause"),
+    run: () => steerRun("pause"),
   },
   {
     id: "run-continue",
@@ -45,14 +41,14 @@ export const CHOOSING_COMMANDS: Command[] = [
     refused: (state) =>
       needsRun(state) ??
       (state.run && mayContinue(state.run) ? null : "it goes on, or has reached its end"),
-    run: steer("continue"),
+    run: () => steerRun("continue"),
   },
   {
     id: "run-stop",
     label: "Stop the run",
     group: "Choosing",
     refused: whileRun("running", "paused"),
-    run: steer("stop"),
+    run: () => steerRun("stop"),
   },
   {
     id: "run-follow",
