@@ -127,10 +127,13 @@ def interrupted(*words: str | Path) -> Result:
     with open(terminal, "rb", buffering=0) as shown, start(*words, stderr=end, env=wide) as process:
         os.close(end)
         err = b""
-        while not re.search(rb"[1-9]\d*/\d+", err):
-            err += shown.read(1000)
-        process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=60)
+        try:
+            while not re.search(rb"[1-9]\d*/\d+", err):
+                err += shown.read(1000)
+            process.send_signal(signal.SIGINT)
+            out, _ = process.communicate(timeout=60)
+        finally:
+            process.kill()
         with suppress(OSError):  # the end of a terminal that nobody writes to any more
             while more := shown.read(1000):
                 err += more
